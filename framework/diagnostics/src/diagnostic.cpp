@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kompono/diagnostics/diagnostic.hpp"
 
-#include <algorithm>
-#include <tuple>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <tuple>
 
 namespace kompono {
 namespace {
 
-bool StartsCodePoint(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
+bool StartsCodePoint(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+}
 
 int CodePoints(std::string_view text) {
   return static_cast<int>(std::count_if(text.begin(), text.end(), StartsCodePoint));
@@ -18,9 +20,12 @@ int CodePoints(std::string_view text) {
 
 std::string_view SeverityName(Severity severity) {
   switch (severity) {
-    case Severity::kError: return "error";
-    case Severity::kWarning: return "warning";
-    case Severity::kNote: break;
+    case Severity::kError:
+      return "error";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kNote:
+      break;
   }
   return "note";
 }
@@ -64,7 +69,8 @@ SourceSpan SpanOf(std::string_view text, std::size_t begin, std::size_t end) {
   const std::string_view line = LineAround(text, begin);
   const auto line_begin = static_cast<std::size_t>(line.data() - text.data());
   SourceSpan span;
-  span.line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
+  span.line = 1 + static_cast<int>(std::count(
+                      text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
   span.column = 1 + CodePoints(text.substr(line_begin, begin - line_begin));
   end = std::min(end, line_begin + line.size());
   span.length = end > begin ? std::max(1, CodePoints(text.substr(begin, end - begin))) : 1;
@@ -85,7 +91,8 @@ SourceSpan SpanAt(std::string_view text, int line, int column, int length) {
     } while (at < text.size() && !StartsCodePoint(text[at]));
     return at;
   };
-  for (int i = 1; i < column && begin < text.size() && text[begin] != '\n'; ++i) begin = next_point(begin);
+  for (int i = 1; i < column && begin < text.size() && text[begin] != '\n'; ++i)
+    begin = next_point(begin);
   std::size_t end = begin;
   for (int i = 0; i < length && end < text.size() && text[end] != '\n'; ++i) end = next_point(end);
   return SpanOf(text, begin, end);
@@ -104,15 +111,19 @@ std::string Render(const Diagnostic& diagnostic, const RenderOptions& options) {
     place = span.line > 0 ? fmt::format("{}:{}:{}: ", diagnostic.file, span.line, span.column)
                           : diagnostic.file + ": ";
   }
-  std::string text = fmt::format("{}{}: {}", paint("1", place), paint(hue, SeverityName(diagnostic.severity)),
+  std::string text = fmt::format("{}{}: {}",
+                                 paint("1", place),
+                                 paint(hue, SeverityName(diagnostic.severity)),
                                  diagnostic.message);
   if (!diagnostic.code.empty()) text += fmt::format(" [{}]", diagnostic.code);
   text += '\n';
   if (span.line > 0) {
     const std::string number = std::to_string(span.line);
-    const std::string carets = "^" + std::string(static_cast<std::size_t>(std::max(0, span.length - 1)), '~');
+    const std::string carets =
+        "^" + std::string(static_cast<std::size_t>(std::max(0, span.length - 1)), '~');
     text += fmt::format(" {} | {}\n", number, span.line_text);
-    text += fmt::format(" {} | {}{}\n", std::string(number.size(), ' '), Indentation(span), paint(hue, carets));
+    text += fmt::format(
+        " {} | {}{}\n", std::string(number.size(), ' '), Indentation(span), paint(hue, carets));
   }
   if (!diagnostic.help.empty()) text += fmt::format("  help: {}\n", diagnostic.help);
   return text;
@@ -123,7 +134,8 @@ std::string RenderAll(const Diagnostics& diagnostics, const RenderOptions& optio
   order.reserve(diagnostics.size());
   for (const Diagnostic& diagnostic : diagnostics) order.push_back(&diagnostic);
   std::stable_sort(order.begin(), order.end(), [](const Diagnostic* a, const Diagnostic* b) {
-    return std::tie(a->file, a->span.line, a->span.column) < std::tie(b->file, b->span.line, b->span.column);
+    return std::tie(a->file, a->span.line, a->span.column) <
+           std::tie(b->file, b->span.line, b->span.column);
   });
   std::string text;
   std::size_t errors = 0;
@@ -133,7 +145,8 @@ std::string RenderAll(const Diagnostics& diagnostics, const RenderOptions& optio
     errors += diagnostic->severity == Severity::kError ? 1 : 0;
     warnings += diagnostic->severity == Severity::kWarning ? 1 : 0;
   }
-  if (errors > 0 && warnings > 0) return text + Plural(errors, "error") + ", " + Plural(warnings, "warning") + "\n";
+  if (errors > 0 && warnings > 0)
+    return text + Plural(errors, "error") + ", " + Plural(warnings, "warning") + "\n";
   if (errors > 0) return text + Plural(errors, "error") + "\n";
   if (warnings > 0) return text + Plural(warnings, "warning") + "\n";
   return text;

@@ -2,37 +2,40 @@
 #ifndef KOMPONO_DIAGNOSTICS_DIAGNOSTIC_HPP_
 #define KOMPONO_DIAGNOSTICS_DIAGNOSTIC_HPP_
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
 /// How kompono speaks of data that came from outside.
 ///
-/// Every reader (formula, layout, sidecar, measurements, study) judges its input completely and returns either the
-/// value or all complaints at once:
+/// Every reader (formula, layout, sidecar, measurements, study) judges its input completely and
+/// returns either the value or all complaints at once:
 ///
 ///     Parsed<Formula> formula = ParseFormula("part X Q7 O tool");
 ///     if (!formula) std::cerr << RenderAll(formula.error(), {});
 ///
-/// A complaint has a place, a code that stays the same between versions, a sentence, and where possible a way out:
+/// A complaint has a place, a code that stays the same between versions, a sentence, and where
+/// possible a way out:
 ///
 ///     machine.toml:4:10: error: unknown module 'pyramyd' [E0304]
 ///      4 | module = "pyramyd"
 ///        |          ^~~~~~~~~
 ///       help: did you mean 'pyramid'?
 ///
-/// Code ranges: E01 formula, E02 plugins, E03 layouts, E04 measurements and calibration, E05 catalog, E06 command
-/// line and poses, E07 kinematics. Warnings use W with the same ranges, notes N. docs/codes.md lists them all.
+/// Code ranges: E01 formula, E02 plugins, E03 layouts, E04 measurements and calibration, E05
+/// catalog, E06 command line and poses, E07 kinematics. Warnings use W with the same ranges, notes
+/// N. docs/codes.md lists them all.
 namespace kompono {
 
 enum class Severity { kNote, kWarning, kError };
 
-/// A stretch of one line of some text. Columns count Unicode code points from 1, so that the caret stands right under
-/// Cyrillic letters too; line 0 means "no place".
+/// A stretch of one line of some text. Columns count Unicode code points from 1, so that the caret
+/// stands right under Cyrillic letters too; line 0 means "no place".
 struct SourceSpan {
   int line = 0;
   int column = 0;
@@ -57,12 +60,12 @@ using Parsed = tl::expected<T, Diagnostics>;
 
 [[nodiscard]] bool HasErrors(const Diagnostics& diagnostics);
 
-/// The span of `text[begin, end)`, byte offsets into the whole text; an empty range marks one character. Offsets past
-/// the end are moved to the end.
+/// The span of `text[begin, end)`, byte offsets into the whole text; an empty range marks one
+/// character. Offsets past the end are moved to the end.
 [[nodiscard]] SourceSpan SpanOf(std::string_view text, std::size_t begin, std::size_t end);
 
-/// The span at a 1-based line and column (code points) of `text`, `length` code points long; what TOML and JSON
-/// parsers report. Places outside the text are moved to the nearest inside.
+/// The span at a 1-based line and column (code points) of `text`, `length` code points long; what
+/// TOML and JSON parsers report. Places outside the text are moved to the nearest inside.
 [[nodiscard]] SourceSpan SpanAt(std::string_view text, int line, int column, int length = 1);
 
 struct RenderOptions {
@@ -75,7 +78,8 @@ struct RenderOptions {
 /// All of them in the order of file, line and column, then "2 errors, 1 warning".
 [[nodiscard]] std::string RenderAll(const Diagnostics& diagnostics, const RenderOptions& options);
 
-/// {"severity", "code", "file", "line", "column", "length", "message", "help"}; place members only if there is one.
+/// {"severity", "code", "file", "line", "column", "length", "message", "help"}; place members only
+/// if there is one.
 [[nodiscard]] nlohmann::json ToJson(const Diagnostic& diagnostic);
 [[nodiscard]] nlohmann::json ToJson(const Diagnostics& diagnostics);
 

@@ -8,11 +8,12 @@
 
 namespace kompono {
 
-/// The candidate nearest to `word` by Damerau-Levenshtein distance (letter case counts half), or an empty string when
-/// none is within a third of the word's length (at least one edit).
+/// The candidate nearest to `word` by Damerau-Levenshtein distance (letter case counts half), or an
+/// empty string when none is within a third of the word's length (at least one edit).
 [[nodiscard]] std::string Nearest(std::string_view word, std::span<const std::string> candidates);
 
-/// "did you mean 'pyramid'?" if something is near, else "known are: a, b, c" (at most `most` names), else "".
+/// "did you mean 'pyramid'?" if something is near, else "known are: a, b, c" (at most `most`
+/// names), else "".
 [[nodiscard]] std::string DidYouMean(std::string_view word,
                                      std::span<const std::string> candidates,
                                      std::size_t most = 12);

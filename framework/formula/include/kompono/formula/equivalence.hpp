@@ -8,8 +8,8 @@
 
 #include "kompono/formula/formula.hpp"
 
-/// Three equivalences of layouts, from fine to coarse. Each is given by a key: two formulas are equivalent exactly when
-/// their keys are equal.
+/// Three equivalences of layouts, from fine to coarse. Each is given by a key: two formulas are
+/// equivalent exactly when their keys are equal.
 namespace kompono::formula {
 
 /// Same string: the canonical text.
@@ -18,15 +18,18 @@ namespace kompono::formula {
 /// Same distribution of motions: neighbouring translations on one side commute.
 [[nodiscard]] std::string DistributionKey(const Formula& formula);
 
-/// Same motion of the tool relative to the workpiece: additionally, moving an axis across O only changes its sign, so
-/// that the chain is read from workpiece to tool with O left out.
+/// Same motion of the tool relative to the workpiece: additionally, moving an axis across O only
+/// changes its sign, so that the chain is read from workpiece to tool with O left out.
 [[nodiscard]] std::string RelativeMotionKey(const Formula& formula);
 
-/// Calls `visit` with every serial layout of the given motions: all orders, all positions of O, leaves implied.
-/// `letters` such as "XYZC"; n letters give (n+1)! strings. A visitor that returns false stops the walk.
-void ForEachDistribution(std::string_view letters, const std::function<bool(const Formula&)>& visit);
+/// Calls `visit` with every serial layout of the given motions: all orders, all positions of O,
+/// leaves implied. `letters` such as "XYZC"; n letters give (n+1)! strings. A visitor that returns
+/// false stops the walk.
+void ForEachDistribution(std::string_view letters,
+                         const std::function<bool(const Formula&)>& visit);
 
-/// How many classes the layouts of `letters` fall into under each equivalence (design.md, section 4: XYZ 24 / 8 / 1).
+/// How many classes the layouts of `letters` fall into under each equivalence (design.md, section
+/// 4: XYZ 24 / 8 / 1).
 struct ClassCounts {
   long strings = 0;
   long distributions = 0;

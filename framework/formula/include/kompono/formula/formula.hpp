@@ -9,12 +9,14 @@
 
 #include "kompono/diagnostics/diagnostic.hpp"
 
-/// Structural formulas: a machine written as a line of letters (grammar: docs/design.md, section 4).
+/// Structural formulas: a machine written as a line of letters (grammar: docs/design.md, section
+/// 4).
 ///
 ///     part_xy (XY):drive O|O Z P_z
 ///
-/// Left of the base `O` stand the blocks between the workpiece and the base, read from the workpiece; right of it those
-/// that lead to the tool. The tree below is a plain value: equal trees print equal text.
+/// Left of the base `O` stand the blocks between the workpiece and the base, read from the
+/// workpiece; right of it those that lead to the tool. The tree below is a plain value: equal trees
+/// print equal text.
 namespace kompono::formula {
 
 /// How a main-motion spindle lies; kNone marks an axis that is no main-motion spindle.
@@ -22,11 +24,11 @@ enum class Orientation { kNone, kHorizontal, kVertical, kInclined };
 
 /// One motion: `Z`, `z` (setting motion), `X4`, `C_h` (main-motion spindle), `B:table`.
 struct Axis {
-  char letter = 'X';     ///< always the capital
-  int number = 0;        ///< digits behind the letter; 0 when there are none
-  bool working = true;   ///< capital in the text; false: a setting motion
+  char letter = 'X';    ///< always the capital
+  int number = 0;       ///< digits behind the letter; 0 when there are none
+  bool working = true;  ///< capital in the text; false: a setting motion
   Orientation orientation = Orientation::kNone;
-  std::string block;     ///< behind the colon, or empty
+  std::string block;  ///< behind the colon, or empty
   bool operator==(const Axis&) const = default;
 
   [[nodiscard]] bool rotary() const {
@@ -36,11 +38,13 @@ struct Axis {
   [[nodiscard]] std::string Name() const;
 };
 
-/// Motions that one parallel mechanism realises together: `(XY):drive`. Vragov's `(CZ)_v` gives the group an orientation.
+/// Motions that one parallel mechanism realises together: `(XY):drive`. Vragov's `(CZ)_v` gives the
+/// group an orientation.
 struct Group {
   std::vector<Axis> axes;
   Orientation orientation = Orientation::kNone;
-  std::string block;  ///< empty when the text names none; the layout must then say which block realises it
+  std::string
+      block;  ///< empty when the text names none; the layout must then say which block realises it
   bool operator==(const Group&) const = default;
 };
 
@@ -61,7 +65,8 @@ struct Fork;
 using Item = std::variant<Axis, Group, Leaf, Fork>;
 using Chain = std::vector<Item>;
 
-/// Branches carried side by side: `(part1 C_h + part2 C2_h Z2)`. `2(...)` is one branch with count 2.
+/// Branches carried side by side: `(part1 C_h + part2 C2_h Z2)`. `2(...)` is one branch with
+/// count 2.
 struct Fork {
   int count = 1;
   std::vector<Chain> branches;
@@ -76,17 +81,20 @@ struct Formula {
   bool operator==(const Formula&) const = default;
 };
 
-/// The formula, or every complaint (codes E01xx) with spans into `text`. Input dialects (LaTeX as printed, Cyrillic
-/// look-alike letters, `0` for `O`, a leaf before an axis, ISO 230-1 in brackets) are read too: each change made on the
-/// way is appended to `notes` (severity kNote, code N01xx) if it is not null. `file` goes into the diagnostics.
+/// The formula, or every complaint (codes E01xx) with spans into `text`. Input dialects (LaTeX as
+/// printed, Cyrillic look-alike letters, `0` for `O`, a leaf before an axis, ISO 230-1 in brackets)
+/// are read too: each change made on the way is appended to `notes` (severity kNote, code N01xx) if
+/// it is not null. `file` goes into the diagnostics.
 [[nodiscard]] Parsed<Formula> ParseFormula(std::string_view text,
                                            std::string_view file = "formula",
                                            Diagnostics* notes = nullptr);
 
-/// The canonical text, e.g. "part_xy (XY):drive O|O Z P_z". ParseFormula(Canonical(f)) == f for every f.
+/// The canonical text, e.g. "part_xy (XY):drive O|O Z P_z". ParseFormula(Canonical(f)) == f for
+/// every f.
 [[nodiscard]] std::string Canonical(const Formula& formula);
 
-/// One line per block from workpiece to tool, in words: what it is, what carries it, working or setting motion.
+/// One line per block from workpiece to tool, in words: what it is, what carries it, working or
+/// setting motion.
 struct Explanation {
   std::string text;     ///< the block as canonical text
   std::string meaning;  ///< "translation along X, working motion, carries the workpiece side"
