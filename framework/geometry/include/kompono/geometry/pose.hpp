@@ -5,6 +5,7 @@
 #include <span>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 /// Rigid-body poses templated on the scalar. Frames are in the names: `X_AB` is the pose of frame B
 /// in frame A, `p_AQ` a point Q in A, and letters that touch are equal: `X_AC = X_AB * X_BC`.

@@ -21,6 +21,10 @@ namespace kompono {
   return chosen;
 }
 
+Symbol Select(const SymbolCondition& condition,
+              const Symbol& yes,
+              const Symbol& no);  // in symbol.hpp
+
 /// Jets compare by value, so over double the condition is a bool.
 template <int N>
 [[nodiscard]] ceres::Jet<double, N> Select(bool condition,
