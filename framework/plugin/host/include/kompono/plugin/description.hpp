@@ -109,6 +109,8 @@ struct PresetDescription {
   std::map<std::string, std::vector<double>>
       defaults;  ///< parameter -> numbers a layout may change
   std::map<std::string, int> mode_defaults;
+  std::map<std::string, SourceSpan>
+      places;  ///< where "of", "fixed.<name>", "defaults.<name>" and "modes.<name>" stand
 };
 
 struct Sidecar {

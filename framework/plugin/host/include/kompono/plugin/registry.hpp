@@ -54,19 +54,28 @@ struct PluginRecord {
 
 class Registry {
  public:
-  /// Reads every `<folder>/*/plugin.toml`. The first plugin with an id wins; a second one is listed
-  /// as disabled. Never throws for bad plugins.
+  /// Reads every `<folder>/*/plugin.toml`, and `<folder>/plugin.toml` if there is one. Folders are
+  /// taken in the given order, plugins in a folder by name. The first plugin with an id wins; a
+  /// second one is listed as disabled. Never throws for bad plugins; folders that do not exist are
+  /// passed over.
   [[nodiscard]] static Registry Discover(std::span<const std::filesystem::path> folders);
 
   Registry(Registry&&) noexcept;
   Registry& operator=(Registry&&) noexcept;
   ~Registry();
 
+  /// Everything found, in the order of the search. A record's modules include its presets, put on
+  /// their bases if it is enabled.
   [[nodiscard]] std::span<const PluginRecord> plugins() const;
   /// All modules of enabled plugins, presets resolved, sorted by id.
   [[nodiscard]] std::span<const ModuleDescription> modules() const;
   [[nodiscard]] const ModuleDescription* Find(std::string_view module_id) const;
   [[nodiscard]] std::vector<std::string> ModuleIds(ModuleKind kind) const;
+
+  /// E0208 for an id that Find does not know: what was perhaps meant, or which disabled plugin
+  /// would have offered it and why it is disabled. Without a place; the caller knows where the id
+  /// stood.
+  [[nodiscard]] Diagnostic UnknownModule(std::string_view module_id) const;
 
   /// Loads the library if need be (thread-safe) and creates the module. The object keeps its
   /// library mapped.
@@ -75,8 +84,8 @@ class Registry {
   [[nodiscard]] tl::expected<std::shared_ptr<const Unit>, Diagnostic> CreateUnit(
       std::string_view module_id) const;
 
-  /// Loads every library and checks it against its sidecar, so that `plugins()` tells what is
-  /// really usable.
+  /// Loads every library and checks it, and each of its modules, against the sidecar, so that
+  /// `plugins()` tells what is really usable. Spans and pointers given out before are void then.
   void LoadAll();
 
  private:
