@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <set>
 
 #include "kompono/diagnostics/suggestion.hpp"
@@ -164,6 +162,7 @@ std::optional<StructureDescription> ReadStructure(TableReader& table) {
   } else if (!entry->Has("pairs")) {
     entry->Complain("E0222", "pairs", "'structure' has no 'pairs'");
   }
+  structure.planar = entry->Bool("planar").value_or(false);
   entry->RefuseUnknownKeys();
   return structure;
 }

@@ -64,6 +64,7 @@ struct LinkDescription {
 struct StructureDescription {
   int links = 0;  ///< base and platform count once each
   std::map<std::string, int> pairs;
+  bool planar = false;  ///< moves in one plane: a link has 3 freedoms, not 6
 };
 
 struct ModuleDescription {
