@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CALIBRATION_IDENTIFICATION_HPP_
+#define KOMPONO_CALIBRATION_IDENTIFICATION_HPP_
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kompono/calibration/measurements.hpp"
+#include "kompono/diagnostics/diagnostic.hpp"
+#include "kompono/kinematics/machine.hpp"
+
+/// Finds the real geometry of a machine from measurements.
+///
+/// Unknowns are the free numbers of the machine's geometry θ: lengths, joints, drive zeros, mounts,
+/// the pose of an open base, the tool. With the readings of measurement k the machine predicts the
+/// tool pose X_WT(readings_k, θ); the fit minimises the squared differences from what was measured,
+/// each divided by its standard deviation:
+///
+///     C(θ) = 1/2 Σ_k |r_k(θ) / σ_k|² + 1/2 Σ_i ((θ_i - θ_i nominal) / prior σ_i)²
+///
+/// The derivatives are exact (automatic, through the closures by the implicit function theorem);
+/// therefore the rank of the Jacobian tells what the measurements can determine. Directions that
+/// they cannot are reported in words and get the smallest change in units of the manufacturing
+/// tolerances, so that predictions are not disturbed and parameters do not wander.
+namespace kompono::calibration {
+
+/// Patterns: `*` stands for any characters, brackets are literal: "struts.base[*]", "*.zero". A
+/// name without the rest means all below it: "open_base", "struts.base".
+[[nodiscard]] bool MatchesPattern(std::string_view pattern, std::string_view name);
+
+struct IdentifyOptions {
+  /// What may change. The first of these that is not empty: this list; the layout's [calibration]
+  /// free; what the measurement format suggests; all parameters marked identifiable.
+  std::vector<std::string> free;
+  /// What may not. Added to the layout's lock, which holds unless `free` above is given.
+  std::vector<std::string> lock;
+  std::map<std::string, double> prior_sigma;            ///< over the layout's; mm, rad
+  std::map<std::string, std::array<double, 2>> bounds;  ///< over the layout's; mm, rad
+  double default_sigma_mm = 0.01;                       ///< for rows without their own
+  double default_sigma_rad = 1e-5;                      ///< for rows without their own
+  double held_out_fraction = 0.0;  ///< of the rows not held out by the file, drawn by `seed`
+  std::uint64_t seed = 1;
+  int max_iterations = 100;
+  double rank_threshold = 1e-9;  ///< relative to the largest singular value, columns of unit length
+  double correlation_threshold = 0.95;   ///< pairs above it are reported
+  std::optional<Eigen::VectorXd> start;  ///< θ to start from; the layout's if not given
+};
+
+enum class IdentifyStatus {
+  kConverged,
+  kRankDeficient,       ///< converged; some combinations of parameters are not determined
+  kIterationLimit,      ///< the parameters are not to be trusted
+  kTooFewMeasurements,  ///< no more numbers than they can explain
+  kForwardFailed,       ///< a row has readings at which the machine has no pose
+  kBadInput,            ///< the options do not fit the machine
+};
+[[nodiscard]] std::string_view Name(IdentifyStatus status);
+
+/// Errors of one measured quantity, before and after. Of a position or orientation the error is the
+/// length of the difference vector (measured components only); RMS and maximum are over the rows.
+struct ErrorStatistics {
+  std::string quantity;  ///< "height", "distance", "position", "orientation"
+  bool angle = false;    ///< rad instead of mm
+  bool held_out = false;
+  int count = 0;
+  double rms_before = 0.0, rms_after = 0.0;
+  double max_before = 0.0, max_after = 0.0;
+};
+
+struct IdentifiedParameter {
+  std::string name;
+  bool angle = false;
+  double before = 0.0, after = 0.0;  ///< mm or rad
+  std::optional<double> sigma;       ///< standard deviation; none if it is not determined
+  double tolerance = 0.0;            ///< of manufacturing; 0 if none is known
+  bool at_bound = false;
+  bool determined = true;  ///< false: part of a combination that the measurements cannot see
+  [[nodiscard]] double change() const { return after - before; }
+};
+
+struct CorrelatedPair {
+  std::string first, second;
+  double correlation = 0.0;
+};
+
+/// A combination of parameters that can change without any effect on the measurements.
+struct NullDirection {
+  /// Change of each parameter, the largest being ±1 (mm or rad).
+  std::vector<std::pair<std::string, double>> parts;
+  std::string words;   ///< "open_base.x and part.datum.x can only be told apart up to their sum"
+  std::string remedy;  ///< "lock one of them, or measure the orientation too"
+};
+
+/// One row of the file.
+struct RowResidual {
+  int row = 0, line = 0;
+  MeasurementKind kind = MeasurementKind::kPosition;
+  bool held_out = false;
+  double before_mm = 0.0, after_mm = 0.0;
+  double before_rad = 0.0, after_rad = 0.0;  ///< poses only
+  double after_sigmas = 0.0;  ///< RMS of the row's residuals after, in their standard deviations
+};
+
+/// The story of one identification.
+struct CalibrationReport {
+  IdentifyStatus status = IdentifyStatus::kBadInput;
+  Diagnostics diagnostics;  ///< errors that made it fail, warnings about data and result
+  std::string solver_message;
+  int iterations = 0;
+  int rows_fitted = 0, rows_held_out = 0;
+  int numbers = 0;                             ///< measured numbers in the fit
+  int rank = 0;                                ///< of the Jacobian of measurements and priors
+  int dof = 0;                                 ///< numbers + priors - rank
+  double cost_before = 0.0, cost_after = 0.0;  ///< C(θ)
+  double chi_squared = 0.0;                    ///< 2 C(θ) after
+  double sigma0 =
+      0.0;  ///< sqrt(chi²/dof): 1 when the standard deviations were right; 0 without dof
+  bool sigma_assumed = false;  ///< deviations were not given; those of the parameters are scaled by
+                               ///< sigma0 instead
+  double scaled_condition = 0.0;  ///< of the determined part, columns of unit length
+  double solver_ms = 0.0;         ///< the least-squares solver
+  double total_ms = 0.0;          ///< with statistics, rank and covariance
+  /// Predicted standard deviation of the tool point over the fitted rows, from the parameters'
+  /// covariance: RMS and maximum of the length.
+  double tool_sigma_rms_mm = 0.0, tool_sigma_max_mm = 0.0;
+  Eigen::VectorXd theta_before, theta_after;    ///< all of the machine's parameters
+  std::vector<int> free;                        ///< indices into them
+  Eigen::MatrixXd covariance;                   ///< of the free ones; mm, rad
+  std::vector<IdentifiedParameter> parameters;  ///< the free ones
+  std::vector<CorrelatedPair> correlated;
+  std::vector<NullDirection> unidentifiable;
+  std::vector<ErrorStatistics> statistics;
+  std::vector<RowResidual> rows;
+
+  /// The parameters may be used.
+  [[nodiscard]] bool ok() const {
+    return status == IdentifyStatus::kConverged || status == IdentifyStatus::kRankDeficient;
+  }
+};
+
+[[nodiscard]] CalibrationReport Identify(const kinematics::Machine& machine,
+                                         const MeasurementSet& set,
+                                         const IdentifyOptions& options = {});
+
+/// Σ |r_k / σ_k|² over the rows not held out, rows without their own σ taking that of `options`;
+/// not a number if a row has no pose.
+[[nodiscard]] double WeightedSquares(const kinematics::Machine& machine,
+                                     const MeasurementSet& set,
+                                     const Eigen::VectorXd& theta,
+                                     const IdentifyOptions& options = {});
+
+}  // namespace kompono::calibration
+
+#endif  // KOMPONO_CALIBRATION_IDENTIFICATION_HPP_
