@@ -2,6 +2,7 @@
 #ifndef KOMPONO_FORMULA_FORMULA_HPP_
 #define KOMPONO_FORMULA_FORMULA_HPP_
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -53,7 +54,7 @@ enum class LeafKind { kPart, kTool, kProcess };
 /// The end of a chain: `part1_xy`, `tool2`, `P_z`.
 struct Leaf {
   LeafKind kind = LeafKind::kPart;
-  int number = 0;      ///< 0 when there are no digits
+  int number = 0;      ///< 0 when there are no digits; parsing numbers leaves that would be equal
   std::string plane;   ///< part only: "xy", or empty
   char direction = 0;  ///< process only: 'x', 'y' or 'z'
   bool operator==(const Leaf&) const = default;
@@ -81,10 +82,13 @@ struct Formula {
   bool operator==(const Formula&) const = default;
 };
 
-/// The formula, or every complaint (codes E01xx) with spans into `text`. Input dialects (LaTeX as
-/// printed, Cyrillic look-alike letters, `0` for `O`, a leaf before an axis, ISO 230-1 in brackets)
-/// are read too: each change made on the way is appended to `notes` (severity kNote, code N01xx) if
-/// it is not null. `file` goes into the diagnostics.
+/// Longer texts are not looked into (E0131).
+inline constexpr std::size_t kMaxTextBytes = 1024;
+
+/// The formula, or every complaint (codes E01xx, see codes.hpp) with spans into `text`. Input
+/// dialects (LaTeX as printed, Cyrillic look-alike letters, `0` for `O`, a leaf before an axis, ISO
+/// 230-1 in brackets) are read too: each change made on the way is appended to `notes` (severity
+/// kNote, code N01xx) if it is not null. `file` goes into the diagnostics.
 [[nodiscard]] Parsed<Formula> ParseFormula(std::string_view text,
                                            std::string_view file = "formula",
                                            Diagnostics* notes = nullptr);
@@ -92,6 +96,10 @@ struct Formula {
 /// The canonical text, e.g. "part_xy (XY):drive O|O Z P_z". ParseFormula(Canonical(f)) == f for
 /// every f.
 [[nodiscard]] std::string Canonical(const Formula& formula);
+
+/// The text of one element or of a chain of them, as Canonical writes it.
+[[nodiscard]] std::string ItemText(const Item& item);
+[[nodiscard]] std::string ChainText(const Chain& chain);
 
 /// One line per block from workpiece to tool, in words: what it is, what carries it, working or
 /// setting motion.
@@ -102,7 +110,8 @@ struct Explanation {
 };
 [[nodiscard]] std::vector<Explanation> Explain(const Formula& formula);
 
-/// All axes, in the order of the text, forks unrolled branch by branch; groups give their members.
+/// All axes, in the order of the text, forks unrolled branch by branch (the equal branches of a
+/// counted fork once); groups give their members.
 [[nodiscard]] std::vector<Axis> AxesOf(const Formula& formula);
 
 }  // namespace kompono::formula
