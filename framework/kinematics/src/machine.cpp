@@ -64,6 +64,21 @@ Pose<double> Machine::ToolPose(const VectorXd& z,
   return ChainPose(*impl_, z, theta, derivatives);
 }
 
+std::vector<Machine::BlockView> Machine::blocks() const {
+  std::vector<BlockView> views;
+  for (const MechanismModel& mechanism : impl_->mechanisms) {
+    if (mechanism.first_drive < 0) continue;
+    views.push_back({.block = &BlockOf(*impl_, mechanism),
+                     .description = mechanism.description,
+                     .code = mechanism.code.get(),
+                     .coordinates = mechanism.coordinate,
+                     .first_drive = mechanism.first_drive,
+                     .first_parameter = mechanism.theta_module,
+                     .modes = mechanism.modes});
+  }
+  return views;
+}
+
 Machine::SkeletonView Machine::Skeleton(const VectorXd& z, const VectorXd& theta) const {
   SkeletonView view;
   // Frames of the mechanisms in the workpiece-side base M: X_MK = X_MW X_WK.

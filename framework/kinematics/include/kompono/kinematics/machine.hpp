@@ -207,6 +207,18 @@ class Machine {
   };
   [[nodiscard]] SkeletonView Skeleton(const VectorXd& z, const VectorXd& theta) const;
 
+  /// The mechanisms on this chain with their code, for those who record formulas or count links.
+  struct BlockView {
+    const layout::Block* block = nullptr;
+    const plugin::ModuleDescription* description = nullptr;
+    const plugin::Mechanism* code = nullptr;
+    std::vector<int> coordinates;  ///< per local coordinate of the module its index in z
+    int first_drive = 0;           ///< in drives()
+    int first_parameter = 0;       ///< of the module's own numbers, in parameters()
+    std::vector<double> modes;
+  };
+  [[nodiscard]] std::vector<BlockView> blocks() const;
+
   struct Impl;
 
  private:

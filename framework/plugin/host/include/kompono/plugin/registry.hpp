@@ -23,7 +23,7 @@ namespace kompono::plugin {
 
 /// Why a plugin or module was refused. Each has its code in the diagnostics: E0201 CannotOpen,
 /// E0202 NotAPlugin, E0203 ContractTooNew, E0204 ContractTooOld, E0205 ToolchainMismatch, E0206
-/// SidecarMismatch, E0207 DuplicateId, E0208 UnknownModule, E0209 CreateFailed, E0210 UnsafePath;
+/// SidecarMismatch, E0207 DuplicateId, E0208 UnknownModule, E0209 CreateFailed, E0210 UnsafePath, E0211 BadValue;
 /// E022x: the sidecar itself is wrong.
 enum class LoadError {
   kCannotOpen = 201,
@@ -36,6 +36,7 @@ enum class LoadError {
   kUnknownModule = 208,
   kCreateFailed = 209,
   kUnsafePath = 210,
+  kBadValue = 211,  ///< a module evaluated to what its contract does not allow
 };
 
 /// A plugin as it was found; a bad one stays in the list with the reason.
