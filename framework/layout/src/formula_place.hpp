@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_LAYOUT_FORMULA_PLACE_HPP_
+#define KOMPONO_LAYOUT_FORMULA_PLACE_HPP_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "kompono/diagnostics/diagnostic.hpp"
+
+namespace kompono::layout {
+
+/// Where the characters of a TOML string stand in the file, so that a complaint about the formula
+/// points inside the string, escapes and multi-line strings included.
+class FormulaPlace {
+ public:
+  /// `region` is the string's place in `text`, `value` what TOML made of it.
+  FormulaPlace(std::string_view text, const toml::source_region& region, std::string_view value);
+
+  /// A span of the value, as a span of the file.
+  [[nodiscard]] SourceSpan InFile(const SourceSpan& span) const;
+  /// The place of ":name", or of the whole string if it is not written like that.
+  [[nodiscard]] SourceSpan OfBlock(std::string_view name) const;
+  /// The place of the whole string.
+  [[nodiscard]] SourceSpan Whole() const { return whole_; }
+
+ private:
+  [[nodiscard]] SourceSpan Between(std::size_t begin, std::size_t end) const;
+
+  std::string_view text_;
+  std::string value_;
+  SourceSpan whole_;
+  /// Byte offset in the file of every byte of the value, and of its end.
+  std::vector<std::size_t> offset_;
+};
+
+/// Byte offset of a 1-based line and column (code points) of `text`.
+[[nodiscard]] std::size_t OffsetAt(std::string_view text, int line, int column);
+
+}  // namespace kompono::layout
+
+#endif  // KOMPONO_LAYOUT_FORMULA_PLACE_HPP_
