@@ -10,8 +10,9 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <map>
-#include <sstream>
+#include <system_error>
 #include <tuple>
 
 #include "kompono/plugin/abi.h"
@@ -177,19 +178,22 @@ SidecarReading ReadLeniently(std::string_view text, std::string_view file) {
 }
 
 SidecarReading ReadFileLeniently(const std::filesystem::path& file) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || !text) {
+  const auto unreadable = [&file](std::string_view why) {
     SidecarReading reading;
     reading.sidecar.plugin.sidecar = file;
-    const std::string why = errno == 0 ? "unknown reason" : std::strerror(errno);
-    reading.problems.push_back(
-        {.code = "E0220", .file = file.string(), .message = "this file cannot be read: " + why});
+    reading.problems.push_back({.code = "E0220",
+                                .file = file.string(),
+                                .message = fmt::format("this file cannot be read: {}", why)});
     return reading;
-  }
-  return ReadLeniently(text.str(), file.string());
+  };
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    return unreadable("it is not a file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return unreadable(std::strerror(errno));
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return ReadLeniently(text, file.string());
 }
 
 Parsed<Sidecar> ParseSidecar(std::string_view text, std::string_view file) {

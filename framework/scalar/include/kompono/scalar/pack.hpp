@@ -41,6 +41,13 @@ struct NumTraits<kompono::Pack> : GenericNumTraits<kompono::Pack> {
   };
 };
 
+/// Eigen would ask for the alignment of its own largest packets, which is less than a Pack needs
+/// and therefore an error to clang. A Pack aligns itself.
+template <int Size>
+requires(Size != Dynamic) struct internal::compute_default_alignment<kompono::Pack, Size> {
+  enum { value = 0 };
+};
+
 }  // namespace Eigen
 
 #endif  // KOMPONO_SCALAR_PACK_HPP_

@@ -23,8 +23,8 @@ namespace kompono::plugin {
 
 /// Why a plugin or module was refused. Each has its code in the diagnostics: E0201 CannotOpen,
 /// E0202 NotAPlugin, E0203 ContractTooNew, E0204 ContractTooOld, E0205 ToolchainMismatch, E0206
-/// SidecarMismatch, E0207 DuplicateId, E0208 UnknownModule, E0209 CreateFailed, E0210 UnsafePath, E0211 BadValue;
-/// E022x: the sidecar itself is wrong.
+/// SidecarMismatch, E0207 DuplicateId, E0208 UnknownModule, E0209 CreateFailed, E0210 UnsafePath,
+/// E0211 BadValue; E022x: the sidecar itself is wrong.
 enum class LoadError {
   kCannotOpen = 201,
   kNotAPlugin = 202,
