@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CATALOG_STORE_HPP_
+#define KOMPONO_CATALOG_STORE_HPP_
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kompono/catalog/query.hpp"
+#include "kompono/catalog/record.hpp"
+#include "kompono/diagnostics/diagnostic.hpp"
+
+namespace kompono::catalog {
+
+enum class OpenMode {
+  kReadOnly,   ///< must exist; nothing can be changed, not even the schema
+  kReadWrite,  ///< must exist; an older schema is brought up to date
+  kCreate,     ///< as kReadWrite, and made if it does not exist
+};
+
+struct OpenOptions {
+  OpenMode mode = OpenMode::kReadOnly;
+  std::chrono::milliseconds busy_timeout{5000};  ///< how long to wait for another program's write
+};
+
+enum class AddStatus {
+  kAdded,
+  kUpdated,    ///< the layout was there; its text or results were new
+  kUnchanged,  ///< all of it was there
+};
+
+struct AddResult {
+  std::int64_t id = 0;
+  AddStatus status = AddStatus::kAdded;
+};
+
+struct AddOptions {
+  /// 0: all or nothing. Otherwise a transaction is closed after so many layouts, and those before a
+  /// failing one stay.
+  std::size_t layouts_per_transaction = 0;
+};
+
+struct ListOptions {
+  std::int64_t limit = 100;  ///< 0: all
+  std::int64_t after_id = 0;
+};
+
+struct LayoutSummary {
+  std::int64_t id = 0;
+  std::string name;
+  std::string formula;
+  std::string hash;
+  std::optional<double> rms_after_um;
+  std::string added_at;
+};
+
+using Count = std::pair<std::string, std::int64_t>;
+
+struct Statistics {
+  int schema_version = 0;
+  std::int64_t file_bytes = 0;
+  std::int64_t layouts = 0;
+  std::int64_t open_base_layouts = 0;
+  std::int64_t calibrated_layouts = 0;
+  std::int64_t formulas = 0;
+  std::int64_t distributions = 0;
+  std::int64_t relative_motions = 0;
+  std::int64_t parameters = 0;
+  std::int64_t metrics = 0;
+  std::int64_t failed_metrics = 0;
+  std::int64_t calibrations = 0;
+  std::vector<Count> modules;   ///< layouts per module, most used first
+  std::vector<Count> plugins;   ///< layouts per plugin "id version", most used first
+  std::vector<Count> programs;  ///< layouts per program version
+};
+
+[[nodiscard]] nlohmann::ordered_json ToJson(const Statistics& statistics);
+
+/// What `Store::Verify` looked at and what it found (E0530-E0534).
+struct VerifyReport {
+  std::int64_t layouts = 0;
+  std::int64_t calibrations = 0;
+  Diagnostics findings;
+  [[nodiscard]] bool Ok() const { return findings.empty(); }
+};
+
+/// The catalog of machine layouts, one SQLite file.
+///
+///     Parsed<Store> store = Store::Open("machines.db", {.mode = OpenMode::kCreate});
+///     if (!store) return Complain(store.error());
+///     Parsed<AddResult> added = store->Add(record);
+///     Parsed<Table> good = store->Query({.where = "rms_after_um < 100", .sort = "rms_after_um"});
+///
+/// Every function returns its value or all complaints (E05xx, docs/catalog.md); none throws for
+/// what the file or the user did. One Store serves one thread at a time; several Stores and
+/// programs may have the same file open, one writing and any number reading. The file must lie on a
+/// local disk: SQLite's locks are not safe on network shares.
+class Store {
+ public:
+  [[nodiscard]] static Parsed<Store> Open(const std::filesystem::path& path,
+                                          const OpenOptions& options = {});
+
+  Store(Store&&) noexcept;
+  Store& operator=(Store&&) noexcept;
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+  ~Store();
+
+  /// Notes from opening, such as the copy made before a migration (N0501).
+  [[nodiscard]] const Diagnostics& Notes() const;
+
+  /// Adds a layout, or what is new about one that is already there. Metrics and capabilities given
+  /// replace those of the same name and method, calibrations are kept side by side, what is not
+  /// given stays.
+  [[nodiscard]] Parsed<AddResult> Add(const LayoutRecord& record);
+
+  /// The same for many; results in the order of `records`. All records are checked before the first
+  /// is written.
+  [[nodiscard]] Parsed<std::vector<AddResult>> AddAll(std::span<const LayoutRecord> records,
+                                                      const AddOptions& options = {});
+
+  /// `key` is a name, an id, or at least four digits of a hash, tried in this order.
+  [[nodiscard]] Parsed<StoredLayout> Show(std::string_view key) const;
+
+  /// The layout file's text as it was added.
+  [[nodiscard]] Parsed<std::string> Export(std::string_view key) const;
+
+  /// In the order of ids.
+  [[nodiscard]] Parsed<std::vector<LayoutSummary>> List(const ListOptions& options = {}) const;
+
+  [[nodiscard]] Parsed<Statistics> Stats() const;
+
+  /// SQLite's own check, foreign keys, the schema against this program's, every hash recomputed.
+  [[nodiscard]] Parsed<VerifyReport> Verify() const;
+
+  /// Answers over a connection that can only read the documented views, within `request.limits`.
+  [[nodiscard]] Parsed<Table> Query(const QueryRequest& request) const;
+
+  /// SQLite's plan for the same request, one step per line: "SEARCH l USING INDEX layout_by_name
+  /// (name=?)".
+  [[nodiscard]] Parsed<std::vector<std::string>> Explain(const QueryRequest& request) const;
+
+ private:
+  class Impl;
+  explicit Store(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kompono::catalog
+
+#endif  // KOMPONO_CATALOG_STORE_HPP_

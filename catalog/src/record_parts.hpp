@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CATALOG_SRC_RECORD_PARTS_HPP_
+#define KOMPONO_CATALOG_SRC_RECORD_PARTS_HPP_
+
+#include <string>
+#include <string_view>
+
+#include "kompono/catalog/hash.hpp"
+#include "kompono/catalog/record.hpp"
+
+namespace kompono::catalog {
+
+/// What stands for the layout file in the hash: `content`, or `toml` with LF line ends.
+[[nodiscard]] std::string CanonicalContent(const LayoutRecord& record);
+
+[[nodiscard]] Sha256 ContentDigest(const LayoutRecord& record);
+[[nodiscard]] Sha256 ContentDigest(const Calibration& calibration);
+
+/// "lambda 1.0.0, spindle 1.2.0", sorted: equal sets print equal text.
+[[nodiscard]] std::string PluginText(const Provenance& provenance);
+
+}  // namespace kompono::catalog
+
+#endif  // KOMPONO_CATALOG_SRC_RECORD_PARTS_HPP_

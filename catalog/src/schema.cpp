@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "schema.hpp"
+
+#include "failure.hpp"
+#include <SQLiteCpp/Backup.h>
+#include <SQLiteCpp/Statement.h>
+#include <SQLiteCpp/Transaction.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include <sqlite3.h>
+
+namespace kompono::catalog {
+namespace {
+
+/// The first free name of `<path>.v1.bak`, `<path>.v1.2.bak`, ...: an older copy is never
+/// overwritten.
+std::filesystem::path BackupName(const std::filesystem::path& path, int version) {
+  std::filesystem::path name = path;
+  name += fmt::format(".v{}.bak", version);
+  for (int i = 2; std::filesystem::exists(name); ++i) {
+    name = path;
+    name += fmt::format(".v{}.{}.bak", version, i);
+  }
+  return name;
+}
+
+/// Copies through SQLite, which includes what still lies in the write-ahead log, and gives the copy
+/// its name only when it is complete.
+std::filesystem::path CopyAside(SQLite::Database& db,
+                                const std::filesystem::path& path,
+                                int version) {
+  const std::filesystem::path name = BackupName(path, version);
+  std::filesystem::path part = name;
+  part += ".part";
+  std::filesystem::remove(part);
+  {
+    SQLite::Database copy(part.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    SQLite::Backup backup(copy, db);
+    backup.executeStep();
+    copy.exec("PRAGMA journal_mode = DELETE");
+  }
+  std::filesystem::rename(part, name);
+  return name;
+}
+
+void RequireSoundReferences(SQLite::Database& db) {
+  SQLite::Statement broken(db, "PRAGMA foreign_key_check");
+  if (broken.executeStep()) {
+    throw SQLite::Exception(
+        "rows of '" + broken.getColumn(0).getString() + "' refer to missing rows",
+        SQLITE_CONSTRAINT_FOREIGNKEY);
+  }
+}
+
+/// Inside a transaction of the caller.
+void Apply(SQLite::Database& db, const Migration& migration) {
+  db.exec(migration.sql);
+  RequireSoundReferences(db);
+  SQLite::Statement history(db, "INSERT INTO schema_history VALUES(?, ?, ?, ?)");
+  history.bind(1, migration.version);
+  history.bind(2, migration.name);
+  history.bind(3, KOMPONO_PROGRAM_VERSION);
+  history.bind(4, Now());
+  history.exec();
+  db.exec(fmt::format("PRAGMA user_version = {}", migration.version));
+}
+
+}  // namespace
+
+int NewestVersion() {
+  return static_cast<int>(Migrations().size());
+}
+
+int VersionOf(SQLite::Database& db) {
+  return db.execAndGet("PRAGMA user_version").getInt();
+}
+
+std::string Now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+void Configure(SQLite::Database& db) {
+  sqlite3* handle = db.getHandle();
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
+  db.exec("PRAGMA foreign_keys = ON");
+  db.exec("PRAGMA cell_size_check = ON");
+  db.exec("PRAGMA cache_size = -65536");
+  db.exec("PRAGMA synchronous = NORMAL");
+}
+
+void CreateSchema(SQLite::Database& db) {
+  SQLite::Transaction transaction(db, SQLite::TransactionBehavior::EXCLUSIVE);
+  if (VersionOf(db) > 0) return;  // another program was faster
+  db.exec(fmt::format("PRAGMA application_id = {}", kApplicationId));
+  for (const Migration& migration : Migrations()) Apply(db, migration);
+  transaction.commit();
+}
+
+Parsed<Diagnostics> Upgrade(SQLite::Database& db, const std::filesystem::path& path) {
+  const int before = VersionOf(db);
+  std::filesystem::path copy;
+  // Rebuilding a table drops it for a moment; references are checked at the end of each step
+  // instead.
+  db.exec("PRAGMA foreign_keys = OFF");
+  try {
+    for (const Migration& migration : Migrations()) {
+      SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+      // Read under the lock: another program may have migrated meanwhile.
+      if (VersionOf(db) >= migration.version) continue;
+      if (copy.empty()) copy = CopyAside(db, path, VersionOf(db));
+      Apply(db, migration);
+      transaction.commit();
+    }
+  } catch (const SQLite::Exception& e) {
+    Diagnostic failed =
+        Complaint("E0507",
+                  path.string(),
+                  fmt::format("bringing the catalog from schema {} to {} failed and was undone: {}",
+                              before,
+                              NewestVersion(),
+                              e.what()));
+    if (!copy.empty()) failed.help = fmt::format("a copy lies in '{}'", copy.string());
+    return tl::make_unexpected(Diagnostics{std::move(failed)});
+  } catch (const std::filesystem::filesystem_error& e) {
+    return Refuse("E0507",
+                  path.string(),
+                  fmt::format("the copy before a migration cannot be written: {}", e.what()));
+  }
+  db.exec("PRAGMA foreign_keys = ON");
+  Diagnostics notes;
+  if (!copy.empty()) {
+    notes.push_back(
+        {.severity = Severity::kNote,
+         .code = "N0501",
+         .file = path.string(),
+         .message = fmt::format("brought from schema {} to {}; the file as it was lies in '{}'",
+                                before,
+                                NewestVersion(),
+                                copy.string()),
+         .help = ""});
+  }
+  return notes;
+}
+
+}  // namespace kompono::catalog

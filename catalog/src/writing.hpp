@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CATALOG_SRC_WRITING_HPP_
+#define KOMPONO_CATALOG_SRC_WRITING_HPP_
+
+#include <SQLiteCpp/Database.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "command.hpp"
+#include "kompono/catalog/store.hpp"
+
+namespace kompono::catalog {
+
+/// Ids of texts that recur, one statement only for those not met before. Several columns are joined
+/// in the key.
+class Dictionary {
+ public:
+  Dictionary(SQLite::Database& db, const std::string& insert, const std::string& select)
+      : insert_(db, insert), select_(db, select) {}
+
+  struct Entry {
+    std::int64_t id = 0;
+    bool written = false;  ///< made or changed by this call
+  };
+  /// `columns` are bound in their order to both statements; the select need not use the last ones.
+  Entry Find(std::span<const std::string_view> columns);
+
+ private:
+  Command insert_;
+  Command select_;
+  std::unordered_map<std::string, std::int64_t> known_;
+  std::string key_;
+};
+
+/// Prepared statements that put records into the tables; the caller holds the transaction and has
+/// checked the records. After a rollback a Writer is worthless: the ids it remembers may be gone.
+class Writer {
+ public:
+  explicit Writer(SQLite::Database& db);
+
+  AddResult Add(const LayoutRecord& record);
+
+ private:
+  std::int64_t FormulaOf(const LayoutRecord& record);
+  std::int64_t ProvenanceOf(const LayoutRecord& record);
+  std::int64_t TermOf(std::string_view text);
+  std::int64_t QuantityOf(std::string_view name, std::string_view unit);
+  void AddStructure(std::int64_t layout, const LayoutRecord& record);
+  int RefreshText(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
+  int AddResults(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
+  int AddCalibrations(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
+
+  SQLite::Database& db_;
+  Dictionary formulas_;
+  Dictionary provenances_;
+  Dictionary modules_;
+  Dictionary quantities_;
+  Dictionary terms_;
+  Command clear_motions_;
+  Command motion_;
+  Command plugin_;
+  Command layout_;
+  Command find_layout_;
+  Command text_;
+  Command refresh_text_;
+  Command refresh_provenance_;
+  Command block_;
+  Command parameter_;
+  Command metric_;
+  Command capability_;
+  Command calibration_;
+};
+
+}  // namespace kompono::catalog
+
+#endif  // KOMPONO_CATALOG_SRC_WRITING_HPP_

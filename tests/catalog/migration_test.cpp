@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "catalog_fixture.hpp"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+
+namespace kompono::catalog {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// data/catalog_v1.sql is a catalog of schema 1 with three layouts, as the first program made it.
+class MigrationTest : public CatalogTest {
+ protected:
+  void StoreOldCatalog() const {
+    SQLite::Database db(File().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    db.exec(Bytes(std::filesystem::path(KOMPONO_SOURCE_DIR) / "tests/catalog/data/catalog_v1.sql"));
+  }
+};
+
+TEST_F(MigrationTest, BringsAnOldCatalogUpToDateAfterCopyingIt) {
+  StoreOldCatalog();
+  const std::string before = Bytes(File());
+  Parsed<Store> store = Store::Open(File(), {.mode = OpenMode::kReadWrite});
+  ASSERT_TRUE(store) << Said(store.error());
+  EXPECT_EQ(Said(store->Notes()),
+            File().string() + ": note: brought from schema 1 to 2; the file as it was lies in '" +
+                File("machines.db.v1.bak").string() + "' [N0501]\n");
+  EXPECT_TRUE(Bytes(File("machines.db.v1.bak")) == before);
+
+  const Parsed<Statistics> stats = store->Stats();
+  ASSERT_TRUE(stats) << Said(stats.error());
+  EXPECT_EQ(stats->schema_version, 2);
+  EXPECT_EQ(stats->layouts, 3);
+  EXPECT_EQ(stats->parameters, 4);
+  const Parsed<VerifyReport> report = store->Verify();
+  ASSERT_TRUE(report) << Said(report.error());
+  EXPECT_EQ(Said(report->findings), "")
+      << "the migrated schema and rows are those of a new catalog";
+  EXPECT_EQ(report->layouts, 3);
+}
+
+TEST_F(MigrationTest, AddsResultsToLayoutsOfTheOldCatalog) {
+  StoreOldCatalog();
+  Store store = Create();
+  const Parsed<AddResult> added = store.Add(Lambda());
+  ASSERT_TRUE(added) << Said(added.error());
+  EXPECT_EQ(added->status, AddStatus::kUpdated) << "the layout is recognised by its hash";
+  EXPECT_EQ(store.Query({.where = "rms_after_um < 100"})->rows.size(), 1U);
+}
+
+TEST_F(MigrationTest, DoesItOnlyOnce) {
+  StoreOldCatalog();
+  static_cast<void>(Create());
+  EXPECT_THAT(Create().Notes(), ElementsAre());
+  EXPECT_THAT(FilesInFolder(), ElementsAre("machines.db", "machines.db.v1.bak"));
+}
+
+TEST_F(MigrationTest, IncludesInTheCopyWhatStillLiesInTheLog) {
+  StoreOldCatalog();
+  SQLite::Database other(File().string(), SQLite::OPEN_READWRITE);
+  other.exec("PRAGMA journal_mode = WAL; UPDATE layout SET name = 'renamed' WHERE id = 2");
+  ASSERT_GT(std::filesystem::file_size(File("machines.db-wal")), 0U) << "the case under test";
+  static_cast<void>(Create());
+  SQLite::Database copy(File("machines.db.v1.bak").string());
+  EXPECT_EQ(copy.execAndGet("SELECT name FROM layout WHERE id = 2").getString(), "renamed");
+  EXPECT_EQ(copy.execAndGet("PRAGMA user_version").getInt(), 1);
+}
+
+TEST_F(MigrationTest, NeverOverwritesAnOlderCopy) {
+  StoreOldCatalog();
+  WriteBytes(File("machines.db.v1.bak"), "precious");
+  static_cast<void>(Create());
+  EXPECT_EQ(Bytes(File("machines.db.v1.bak")), "precious");
+  EXPECT_TRUE(std::filesystem::exists(File("machines.db.v1.2.bak")));
+}
+
+TEST_F(MigrationTest, UndoesAStepThatFails) {
+  StoreOldCatalog();
+  Tamper("CREATE TABLE calibration(x)");
+  const Parsed<Store> store = Store::Open(File(), {.mode = OpenMode::kReadWrite});
+  EXPECT_EQ(CodeOf(store), "E0507");
+  EXPECT_THAT(Said(store.error()),
+              HasSubstr("from schema 1 to 2 failed and was undone: table calibration already"));
+  EXPECT_THAT(Said(store.error()),
+              HasSubstr("help: a copy lies in '" + File("machines.db.v1.bak").string()));
+  SQLite::Database db(File().string());
+  EXPECT_EQ(db.execAndGet("PRAGMA user_version").getInt(), 1);
+  EXPECT_EQ(
+      db.execAndGet("SELECT count(*) FROM sqlite_schema WHERE name IN ('term', 'metric')").getInt(),
+      0);
+  EXPECT_EQ(db.execAndGet("SELECT count(*) FROM layouts").getInt(), 3);
+}
+
+TEST_F(MigrationTest, UndoesAStepThatFindsBrokenReferences) {
+  StoreOldCatalog();
+  Tamper("PRAGMA foreign_keys = OFF; DELETE FROM formula WHERE id = 1");
+  EXPECT_EQ(CodeOf(Store::Open(File(), {.mode = OpenMode::kReadWrite})), "E0507");
+}
+
+TEST_F(MigrationTest, LeavesAnOldCatalogAloneThatIsOpenedForReading) {
+  StoreOldCatalog();
+  const std::string before = Bytes(File());
+  const Parsed<Store> store = Store::Open(File());
+  EXPECT_EQ(CodeOf(store), "E0506");
+  EXPECT_THAT(Said(store.error()), HasSubstr("brings it up to date"));
+  EXPECT_TRUE(Bytes(File()) == before);
+  EXPECT_THAT(FilesInFolder(), ElementsAre("machines.db"));
+}
+
+}  // namespace
+}  // namespace kompono::catalog
