@@ -233,6 +233,7 @@ void ItemReader::ReadStray() {
                 where,
                 fmt::format("'{}' means nothing here", report_.Quote(where)),
                 HelpForStray(first));
+  if (cursor_.Joined() == U'_') SkipSuffixIndex();
 }
 
 int ItemReader::ReadNumber(Range& where) {
@@ -343,7 +344,7 @@ void ItemReader::ReadPlane(Node& node, bool dialect) {
       fmt::format("'{}' read as the workpiece '{}'", report_.Quote(node.where), node.leaf.Name()));
 }
 
-Orientation ItemReader::ReadOrientation(Range& where, std::string help) {
+Orientation ItemReader::ReadOrientation(Range& where, std::string_view what, std::string help) {
   const char32_t letter = cursor_.Joined(1);
   const std::size_t run = letter == 0 ? 0 : SmallRun(1);
   const Orientation orientation = OrientationOf(letter);
@@ -357,8 +358,8 @@ Orientation ItemReader::ReadOrientation(Range& where, std::string help) {
     const bool missing = !sign && run == 0;
     report_.Error(codes::kBadIndex,
                   index,
-                  missing ? std::string("the orientation is missing behind '_'")
-                          : fmt::format("bad orientation '{}'", report_.Quote(index)),
+                  missing ? fmt::format("the {} is missing behind '_'", what)
+                          : fmt::format("bad {} '{}'", what, report_.Quote(index)),
                   std::move(help));
     where.end = index.end;
     return Orientation::kNone;
@@ -387,7 +388,8 @@ void ItemReader::ReadAxisOrientation(Node& node) {
   } else if (!node.axis.rotary()) {
     help = fmt::format("the translation {} takes no index", name);
   }
-  const Orientation orientation = ReadOrientation(node.where, help);
+  const Orientation orientation =
+      ReadOrientation(node.where, node.axis.rotary() ? "orientation" : "index", help);
   if (orientation == Orientation::kNone) return;
   const Range index{axis.end, node.where.end};
   if (!node.axis.rotary()) {
@@ -534,8 +536,10 @@ void ItemReader::ReadBracketSuffix(Node& node) {
 
 void ItemReader::ReadGroupOrientation(Node& node) {
   const Range bracket = node.where;
-  const Orientation orientation = ReadOrientation(
-      node.where, "_h marks a horizontal, _v a vertical, _i an inclined spindle in the group");
+  const Orientation orientation =
+      ReadOrientation(node.where,
+                      "orientation",
+                      "_h marks a horizontal, _v a vertical, _i an inclined spindle in the group");
   if (orientation == Orientation::kNone) return;
   const Range index{bracket.end, node.where.end};
   const auto spindle = [](const Axis& axis) { return axis.rotary() && axis.working; };

@@ -72,8 +72,9 @@ class ItemReader {
   void ReadPlane(Node& node, bool dialect);
   void ReadAxisOrientation(Node& node);
   void ReadGroupOrientation(Node& node);
-  /// The index at '_'; stretches `where` over it. kNone when it was bad and complained about.
-  Orientation ReadOrientation(Range& where, std::string help);
+  /// The index at '_'; stretches `where` over it. kNone when it was bad and complained about as a
+  /// bad `what`.
+  Orientation ReadOrientation(Range& where, std::string_view what, std::string help);
   void MoveOrientation(Node& node, const Node& member);
   void ReadBlock(std::string& block, Node& node);
   int ReadNumber(Range& where);

@@ -158,7 +158,10 @@ class Judge {
     BlameBars(nodes, bars, joints);
     if (!sides.found) {
       if (report_.Has(codes::kBaseInside)) return sides;
-      if (base_help_.empty()) {
+      if (report_.Has(codes::kIso)) {
+        base_help_ =
+            "write b between the axes that move the workpiece and those that move the tool";
+      } else if (base_help_.empty()) {
         base_help_ =
             "write O between the blocks that carry the workpiece and those that carry the tool: "
             "X Y O Z C_v";

@@ -46,10 +46,10 @@ void Report::Note(const CodeTitle& code, Range where, std::string message, std::
                         std::move(help)));
 }
 
-bool Report::Has(const CodeTitle& error) const {
-  return std::any_of(errors_.begin(), errors_.end(), [&error](const Diagnostic& said) {
-    return said.code == error.code;
-  });
+bool Report::Has(const CodeTitle& code) const {
+  const auto same = [&code](const Diagnostic& said) { return said.code == code.code; };
+  return std::any_of(errors_.begin(), errors_.end(), same) ||
+         std::any_of(notes_.begin(), notes_.end(), same);
 }
 
 std::string Report::Quote(Range where) const {

@@ -31,7 +31,7 @@ class Report {
 
   [[nodiscard]] std::string_view text() const { return text_; }
   [[nodiscard]] std::size_t error_count() const { return errors_.size(); }
-  [[nodiscard]] bool Has(const CodeTitle& error) const;
+  [[nodiscard]] bool Has(const CodeTitle& code) const;
   [[nodiscard]] Diagnostics TakeErrors() { return std::move(errors_); }
   [[nodiscard]] Diagnostics TakeNotes() { return std::move(notes_); }
 
