@@ -212,13 +212,12 @@ class CFile {
     NameParts();
     CWriter writer(local_.graph, variables_, parts_);
     if (is_function) WriteHead();
-    const std::string indent = is_function ? "  " : "";
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (parts_[i].empty()) continue;
       const auto place = static_cast<Index>(i);
       const bool is_condition = GivesCondition(local_.graph.node(place).operation);
       text_ += fmt::format("{}const {} {} = {};\n",
-                           indent,
+                           options_.indent,
                            is_condition ? "int" : options_.real_type,
                            parts_[i],
                            writer.Write(place));
@@ -229,9 +228,9 @@ class CFile {
       const std::string value = part.empty() ? writer.Write(root) : part;
       const std::string& name = expressions_[k].name;
       if (!is_function) {
-        text_ += fmt::format("{} = {};\n", name, value);
+        text_ += fmt::format("{}{} = {};\n", options_.indent, name, value);
       } else {
-        text_ += fmt::format("  out[{}] = {};", k, value);
+        text_ += fmt::format("{}out[{}] = {};", options_.indent, k, value);
         text_ += name.empty() ? "\n" : fmt::format("  /* {} */\n", Comment(name));
       }
     }
@@ -319,9 +318,10 @@ class CFile {
     }
     std::sort(used.begin(), used.end());
     for (const auto& [number, name] : used) {
-      text_ += fmt::format("  const {} {} = in[{}];\n", options_.real_type, name, number);
+      text_ += fmt::format(
+          "{}const {} {} = in[{}];\n", options_.indent, options_.real_type, name, number);
     }
-    if (used.empty()) text_ += "  (void)in;\n";
+    if (used.empty()) text_ += options_.indent + "(void)in;\n";
   }
 
   std::span<const NamedExpression> expressions_;

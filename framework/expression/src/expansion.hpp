@@ -4,6 +4,7 @@
 
 #include "canonical.hpp"
 #include "graph.hpp"
+#include "pool.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -79,6 +80,12 @@ class Expansion {
   Graph result_;
   std::vector<Poly> root_polys_;
 };
+
+/// What `groups` without `others` make up as polynomial, their coefficients simplified together.
+[[nodiscard]] Polynomial CollectPolynomial(Expansion& expansion,
+                                           std::span<const Group> groups,
+                                           std::span<const int> variables,
+                                           const Names& names);
 
 }  // namespace kompono::expression_internal
 

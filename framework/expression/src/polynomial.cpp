@@ -26,29 +26,36 @@ Expression Polynomial::Coefficient(std::span<const int> exponents) const {
   return found == terms.end() ? Expression() : found->coefficient;
 }
 
+Polynomial expression_internal::CollectPolynomial(Expansion& expansion,
+                                                  std::span<const Group> groups,
+                                                  std::span<const int> variables,
+                                                  const Names& names) {
+  Polynomial polynomial;
+  polynomial.variables.assign(variables.begin(), variables.end());
+  std::vector<Index> coefficients;
+  for (const Group& group : groups) {
+    polynomial.terms.push_back({{group.exponents.begin(), group.exponents.end()}, {}});
+    coefficients.push_back(expansion.BuildCoefficient(group.coefficient));
+  }
+  const Simplified collected = Simplify(Access::Wrap(expansion.result(), coefficients, names));
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    polynomial.terms[k].coefficient = collected.expressions[k];
+  }
+  return polynomial;
+}
+
 std::optional<Polynomial> ExpandPolynomial(const Expression& expression,
                                            std::span<const int> variables,
                                            const ExpandOptions& options) {
   KOMPONO_EXPECTS(!expression.IsCondition());
   const Expression simplified = expression.Simplify();
-  Local local = Access::Gather({&simplified, 1});
+  const Local local = Access::Gather({&simplified, 1});
   Expansion expansion(local.graph, local.roots, variables, options);
   const std::vector<Group> groups = expansion.GroupsOf(0);
-  Polynomial polynomial;
-  polynomial.variables.assign(variables.begin(), variables.end());
-  std::vector<Index> coefficients;
-  for (const Group& group : groups) {
-    if (!group.others.empty()) return std::nullopt;
-    polynomial.terms.push_back({{group.exponents.begin(), group.exponents.end()}, {}});
-    coefficients.push_back(expansion.BuildCoefficient(group.coefficient));
-  }
-  const std::vector<Expression> handles =
-      Access::Wrap(std::move(expansion.result()), coefficients, std::move(local.names));
-  const Simplified collected = Simplify(handles);
-  for (std::size_t k = 0; k < handles.size(); ++k) {
-    polynomial.terms[k].coefficient = collected.expressions[k];
-  }
-  return polynomial;
+  const bool is_polynomial = std::all_of(
+      groups.begin(), groups.end(), [](const Group& group) { return group.others.empty(); });
+  if (!is_polynomial) return std::nullopt;
+  return CollectPolynomial(expansion, groups, variables, local.names);
 }
 
 Expression ExpandUnderRoots(const Expression& expression,

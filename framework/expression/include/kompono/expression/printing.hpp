@@ -74,6 +74,7 @@ struct COptions {
   std::string real_type = "double";
   std::vector<std::string> names;  ///< of the variables, as in TextOptions
   std::string part_name = "t";
+  std::string indent = "  ";
   std::string include = "<math.h>";  ///< empty: no include line
   /// What the target's math.h has.
   std::vector<std::string> functions = {"sqrt",

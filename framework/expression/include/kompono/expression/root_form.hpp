@@ -16,8 +16,8 @@ struct RootForm {
   Polynomial under;
 };
 
-/// The expression in this form, or nothing if it has none or more than one root, or a factor beside
-/// the root.
+/// The expression in this form, or nothing if it has no root, more than one, or one that is
+/// multiplied by anything but a number (which is taken under the root).
 [[nodiscard]] std::optional<RootForm> ExpandRootForm(const Expression& expression,
                                                      std::span<const int> variables,
                                                      const ExpandOptions& options = {});
