@@ -57,7 +57,11 @@ std::vector<const Number*> LayoutReader::NumbersOfPattern(std::string_view patte
   std::vector<std::string> names;
   for (const Number& number : numbers_) {
     names.push_back(number.name);
-    if (MatchesPattern(pattern, number.name) || MatchesPattern(pattern, number.other_name))
+    const auto matches = [pattern](const std::string& name) {
+      return MatchesPattern(pattern, name);
+    };
+    if (matches(number.name) ||
+        std::any_of(number.other_names.begin(), number.other_names.end(), matches))
       matching.push_back(&number);
   }
   if (matching.empty()) {

@@ -87,8 +87,9 @@ void LayoutReader::ReadEnds() {
   }
   for (const Place& place : places) {
     const auto table = found.find(place.end);
-    layout_.ends.push_back(
-        ReadEnd(place.end, table == found.end() ? nullptr : TableAt(root_, table->second)));
+    End end = ReadEnd(place.end, table == found.end() ? nullptr : TableAt(root_, table->second));
+    end.table = table == found.end() ? place.keys.back() : table->second;
+    layout_.ends.push_back(std::move(end));
   }
 }
 

@@ -17,8 +17,7 @@ struct ValuePlace {
   std::vector<Number> numbers;
 };
 
-/// The values of a layout in the order: blocks, axes, open base, ends. `path` of an end is empty if
-/// the layout's text has no table for it and none would be understood.
+/// The values of a layout that its file may give, in the order: blocks, axes, open base, ends.
 [[nodiscard]] std::vector<ValuePlace> ValuePlacesOf(const Layout& layout,
                                                     const plugin::Registry& registry);
 

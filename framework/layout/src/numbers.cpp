@@ -32,11 +32,7 @@ class Collector {
     }
     if (layout_.formula.open_base)
       AddPlacement("open_base", layout_.open_base, {"open_base"}, true);
-    for (const End& end : layout_.ends) {
-      const Path path{end.name};
-      AddParameters(end.name, end.module, end.parameters, path);
-      AddPlacement(end.name + ".mount", end.mount, Below(path, "mount"), true);
-    }
+    for (const End& end : layout_.ends) AddEnd(end);
     return std::move(places_);
   }
 
@@ -53,6 +49,22 @@ class Collector {
               block.drives[i],
               drive.rotary,
               Below(Below(path, "drive"), drive.name));
+    }
+  }
+
+  void AddEnd(const End& end) {
+    const std::size_t first = places_.size();
+    const Path path{end.table};
+    AddParameters(end.name, end.module, end.parameters, path);
+    AddPlacement(end.name + ".mount", end.mount, Below(path, "mount"), true);
+    if (end.table == end.name) return;
+    for (std::size_t i = first; i < places_.size(); ++i) {
+      for (Number& number : places_[i].numbers) {
+        std::vector<std::string> others{number.name};
+        others.insert(others.end(), number.other_names.begin(), number.other_names.end());
+        for (const std::string& name : others)
+          number.other_names.push_back(end.table + name.substr(end.name.size()));
+      }
     }
   }
 
@@ -75,7 +87,7 @@ class Collector {
       for (const std::string& name : parameter.NumberNames()) {
         if (at >= values.size()) return;
         place.numbers.push_back({.name = owner + "." + name,
-                                 .other_name = "",
+                                 .other_names = {},
                                  .value = values[at++],
                                  .angle = parameter.angle(),
                                  .pure = parameter.unit == "1"});
@@ -98,7 +110,7 @@ class Collector {
         if (!short_names) std::swap(brief, full);
         place.numbers.push_back(
             {.name = std::move(brief),
-             .other_name = std::move(full),
+             .other_names = {std::move(full)},
              .value = angle ? placement.rotation_rad[i] : placement.position_mm[i],
              .angle = angle});
       }
@@ -107,12 +119,9 @@ class Collector {
   }
 
   void AddZero(const std::string& owner, const Drive& drive, bool rotary, const Path& path) {
-    places_.push_back(
-        {.path = Below(path, "zero"),
-         .columns = 0,
-         .points = false,
-         .numbers = {
-             {.name = owner + ".zero", .other_name = "", .value = drive.zero, .angle = rotary}}});
+    const Number zero{
+        .name = owner + ".zero", .other_names = {}, .value = drive.zero, .angle = rotary};
+    places_.push_back({Below(path, "zero"), 0, false, {zero}});
   }
 
   const Layout& layout_;

@@ -25,13 +25,6 @@ void Visit(formula::Chain& chain, const std::function<void(formula::Item&)>& vis
   }
 }
 
-double LengthFactor(std::string_view unit) {
-  if (unit == "m") return 1000.0;
-  if (unit == "um") return 0.001;
-  if (unit == "in") return 25.4;
-  return 1.0;
-}
-
 }  // namespace
 
 void ForEachItem(formula::Formula& formula, const std::function<void(formula::Item&)>& visit) {
@@ -78,16 +71,7 @@ bool LayoutReader::ParseToml() {
 }
 
 void LayoutReader::ReadUnits() {
-  if (const toml::table* units = TableAt(root_, "units")) {
-    if (const auto length = TextAt(*units, "length")) {
-      units_.length = LengthFactor(*length);
-      units_.length_name = *length;
-    }
-    if (TextAt(*units, "angle") == "rad") {
-      units_.angle = 1.0;
-      units_.angle_name = "rad";
-    }
-  }
+  units_ = UnitsOf(root_);
   if (const toml::table* pose = TableAt(root_, "pose")) {
     layout_.rotation_order =
         TextAt(*pose, "rotation") == "zyx" ? RotationOrder::kZYX : RotationOrder::kXYZ;

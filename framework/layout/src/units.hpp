@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include <toml++/toml.h>
+
 namespace kompono::layout {
 
 /// Units of a file's numbers: factors to millimetres and radians, and the names for messages.
@@ -19,6 +21,9 @@ struct Units {
     return rotary ? angle_name : length_name;
   }
 };
+
+/// What the file's `units` say; defaults for what they do not.
+[[nodiscard]] Units UnitsOf(const toml::table& file);
 
 inline constexpr double kSecondsPerMinute = 60.0;
 /// N/µm to N/mm, and N·m/rad to N·mm/rad.

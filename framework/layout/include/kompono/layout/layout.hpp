@@ -77,6 +77,7 @@ struct End {
   Placement mount;  ///< the unit's base in its carrier
   std::string station;
   int state = 0;
+  std::string table;  ///< the table of the file that describes it or would: "tool" for "P_z"
 };
 
 /// What `kompono calibrate` may change; patterns such as "struts.base[*]", "open_base.*", "*.zero".

@@ -23,8 +23,8 @@ namespace kompono::layout {
 
 struct Number {
   std::string name;
-  std::string other_name;  ///< the other form of a placement's number; else empty
-  double value = 0.0;      ///< mm, rad or a pure number
+  std::vector<std::string> other_names;  ///< other forms of the same
+  double value = 0.0;                    ///< mm, rad or a pure number
   bool angle = false;
   bool pure = false;  ///< neither length nor angle
 };
