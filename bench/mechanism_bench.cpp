@@ -70,18 +70,36 @@ std::shared_ptr<const Mechanism> Pyramid() {
 
 const std::vector<double> kModes{1.0, 1.0, 1.0, -1.0};
 
-void HandWritten(benchmark::State& state) {
-  const std::vector<double> theta = LinearDelta();
-  const Poses poses;
+/// As a control would write it for general rails: no templates, no packs, no library boundary.
+std::array<double, kLegs> HandWrittenDrives(const double* theta, double x, double y, double z) {
   std::array<double, kLegs> q{};
+  for (std::size_t i = 0; i < kLegs; ++i) {
+    const double* start = theta + 3 * i;
+    const double* end = theta + 9 + 3 * i;
+    const double* joint = theta + 18 + 3 * i;
+    const double strut = theta[27 + i];
+    const double ux = end[0] - start[0];
+    const double uy = end[1] - start[1];
+    const double uz = end[2] - start[2];
+    const double length = std::sqrt(ux * ux + uy * uy + uz * uz);
+    const double wx = x + joint[0] - start[0];
+    const double wy = y + joint[1] - start[1];
+    const double wz = z + joint[2] - start[2];
+    const double along = (ux * wx + uy * wy + uz * wz) / length;
+    const double radicand = strut * strut - (wx * wx + wy * wy + wz * wz - along * along);
+    q[i] = along + std::sqrt(radicand);
+  }
+  return q;
+}
+
+void HandWritten(benchmark::State& state) {
+  std::vector<double> theta = LinearDelta();
+  const Poses poses;
   for (auto _ : state) {
+    benchmark::DoNotOptimize(theta.data());
     for (std::size_t k = 0; k < kPoses; ++k) {
-      for (std::size_t i = 0; i < kLegs; ++i) {
-        // The rails are vertical: the distance from the rail is horizontal.
-        const double dx = poses.x[0][k] + theta[18 + 3 * i] - theta[3 * i];
-        const double dy = poses.x[1][k] + theta[19 + 3 * i] - theta[3 * i + 1];
-        q[i] = poses.x[2][k] + std::sqrt(theta[27 + i] * theta[27 + i] - dx * dx - dy * dy);
-      }
+      std::array<double, kLegs> q =
+          HandWrittenDrives(theta.data(), poses.x[0][k], poses.x[1][k], poses.x[2][k]);
       benchmark::DoNotOptimize(q);
     }
   }
