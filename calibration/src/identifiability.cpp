@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identifiability.hpp"
+
+#include "null_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace kompono::calibration {
+namespace {
+
+/// Smaller entries of a null vector are rounding.
+constexpr double kPart = 1e-9;
+
+/// J without the held columns, columns of unit length, reduced to its triangle.
+Eigen::MatrixXd Reduced(const Eigen::MatrixXd& J) {
+  if (J.rows() <= J.cols()) return J;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J);
+  return qr.matrixQR().topRows(J.cols()).triangularView<Eigen::Upper>();
+}
+
+Eigen::MatrixXd Orthonormal(const Eigen::MatrixXd& basis) {
+  if (basis.cols() == 0) return basis;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
+}
+
+/// Gauss-Jordan on the columns of `basis`: every pivot row belongs to one column alone, so that the
+/// columns have few entries. Rows in `preferred` become pivots first: frames read better as "the
+/// mount against the joints" than as "one joint against the others".
+void ReduceColumns(const std::vector<bool>& preferred, Eigen::MatrixXd* basis) {
+  const Eigen::Index rows = basis->rows();
+  const Eigen::Index columns = basis->cols();
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    Eigen::Index best_row = 0;
+    Eigen::Index best_column = k;
+    double best = -1.0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      for (Eigen::Index j = k; j < columns; ++j) {
+        const double size = std::abs((*basis)(i, j));
+        const double weight = preferred[static_cast<std::size_t>(i)] && size > 1e-3 ? 1e3 : 1.0;
+        if (size * weight <= best) continue;
+        best = size * weight;
+        best_row = i;
+        best_column = j;
+      }
+    }
+    basis->col(k).swap(basis->col(best_column));
+    basis->col(k) /= (*basis)(best_row, k);
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      if (j != k) basis->col(j) -= (*basis)(best_row, j) * basis->col(k);
+    }
+  }
+}
+
+bool IsSingleNumber(const std::string& name) {
+  return name.find('[') == std::string::npos && !name.ends_with(".zero");
+}
+
+}  // namespace
+
+RankAnalysis AnalyzeRank(const Eigen::MatrixXd& J,
+                         const std::vector<bool>& held,
+                         double threshold) {
+  const Eigen::Index n = J.cols();
+  RankAnalysis analysis;
+  analysis.column_norm = J.colwise().norm();
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!held[static_cast<std::size_t>(i)]) active.push_back(i);
+  }
+  const auto count = static_cast<Eigen::Index>(active.size());
+  const double largest_column = n > 0 ? analysis.column_norm.maxCoeff() : 0.0;
+  Eigen::VectorXd norm(count);
+  Eigen::MatrixXd unit(J.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index i = active[static_cast<std::size_t>(k)];
+    // A column of rounding errors stays one when it is not blown up to unit length.
+    const bool empty = analysis.column_norm[i] <= 1e-13 * largest_column;
+    norm[k] = empty ? 1.0 : analysis.column_norm[i];
+    if (empty) {
+      unit.col(k).setZero();
+    } else {
+      unit.col(k) = J.col(i) / norm[k];
+    }
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Reduced(unit), Eigen::ComputeFullV);
+  const Eigen::VectorXd& values = svd.singularValues();
+  while (analysis.rank < values.size() && values[analysis.rank] > threshold * values[0]) {
+    ++analysis.rank;
+  }
+  const Eigen::Index null = count - analysis.rank;
+  if (analysis.rank > 0) analysis.condition = values[0] / values[analysis.rank - 1];
+  const Eigen::MatrixXd null_active = svd.matrixV().rightCols(null);
+  const Eigen::MatrixXd gauge_active = Orthonormal(norm.cwiseInverse().asDiagonal() * null_active);
+  const Eigen::MatrixXd root = norm.cwiseInverse().asDiagonal() *
+                               svd.matrixV().leftCols(analysis.rank) *
+                               values.head(analysis.rank).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd free_root = root - gauge_active * (gauge_active.transpose() * root);
+  const Eigen::MatrixXd covariance_active = free_root * free_root.transpose();
+  analysis.null_unit.setZero(n, null);
+  analysis.gauge.setZero(n, null);
+  analysis.covariance.setZero(n, n);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index i = active[static_cast<std::size_t>(k)];
+    analysis.null_unit.row(i) = null_active.row(k);
+    analysis.gauge.row(i) = gauge_active.row(k);
+    for (Eigen::Index m = 0; m < count; ++m) {
+      analysis.covariance(i, active[static_cast<std::size_t>(m)]) = covariance_active(k, m);
+    }
+  }
+  return analysis;
+}
+
+std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
+                                             const kinematics::Machine& machine,
+                                             const Selection& selection,
+                                             const std::vector<RowModel*>& rows,
+                                             const Eigen::VectorXd& theta) {
+  std::vector<NullDirection> directions;
+  Eigen::MatrixXd basis = analysis.null_unit;
+  std::vector<bool> preferred;
+  for (const int index : selection.free) {
+    preferred.push_back(IsSingleNumber(machine.parameters()[static_cast<std::size_t>(index)].name));
+  }
+  ReduceColumns(preferred, &basis);
+  const NullWords words(machine, rows, theta);
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+    basis.col(k) /= basis.col(k).cwiseAbs().maxCoeff();
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(theta.size());
+    for (Eigen::Index i = 0; i < basis.rows(); ++i) {
+      if (std::abs(basis(i, k)) < kPart) continue;
+      const double norm = analysis.column_norm[i] > 0.0 ? analysis.column_norm[i] : 1.0;
+      change[selection.free[static_cast<std::size_t>(i)]] = basis(i, k) * selection.scale[i] / norm;
+    }
+    change /= change.cwiseAbs().maxCoeff();
+    directions.push_back(words.Describe(change));
+  }
+  return directions;
+}
+
+}  // namespace kompono::calibration

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CALIBRATION_SRC_IDENTIFIABILITY_HPP_
+#define KOMPONO_CALIBRATION_SRC_IDENTIFIABILITY_HPP_
+
+#include "residuals.hpp"
+#include "selection.hpp"
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kompono/calibration/identification.hpp"
+
+namespace kompono::calibration {
+
+/// What the Jacobian J of whitened residuals and priors by u says. Unknowns in `held` (at a bound)
+/// do not take part.
+struct RankAnalysis {
+  Eigen::Index rank = 0;
+  double condition = 0.0;     ///< of the determined part, columns of unit length
+  Eigen::MatrixXd null_unit;  ///< null space for columns of unit length, orthonormal
+  Eigen::VectorXd column_norm;
+  Eigen::MatrixXd gauge;       ///< null space in u, orthonormal
+  Eigen::MatrixXd covariance;  ///< of u, of smallest trace: no variance along the gauge
+};
+[[nodiscard]] RankAnalysis AnalyzeRank(const Eigen::MatrixXd& J,
+                                       const std::vector<bool>& held,
+                                       double threshold);
+
+/// The null space as combinations of few parameters, in words, with what would determine them.
+[[nodiscard]] std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
+                                                           const kinematics::Machine& machine,
+                                                           const Selection& selection,
+                                                           const std::vector<RowModel*>& rows,
+                                                           const Eigen::VectorXd& theta);
+
+}  // namespace kompono::calibration
+
+#endif  // KOMPONO_CALIBRATION_SRC_IDENTIFIABILITY_HPP_

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "columns.hpp"
+#include "klipper_import.hpp"
+#include "numbers.hpp"
+#include "residuals.hpp"
+#include "table.hpp"
+#include "unit_check.hpp"
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "kompono/calibration/klipper_delta.hpp"
+#include "kompono/calibration/measurements.hpp"
+#include "kompono/diagnostics/suggestion.hpp"
+
+namespace kompono::calibration {
+namespace {
+
+const std::vector<std::string>& KindNames() {
+  static const std::vector<std::string> names{"height", "distance", "position", "pose"};
+  return names;
+}
+
+std::optional<MeasurementKind> KindOf(std::string_view name) {
+  for (const MeasurementKind kind : {MeasurementKind::kHeight,
+                                     MeasurementKind::kDistance,
+                                     MeasurementKind::kPosition,
+                                     MeasurementKind::kPose}) {
+    if (Name(kind) == name) return kind;
+  }
+  return std::nullopt;
+}
+
+/// The numbers of one row before they become a measurement.
+struct RowCells {
+  const TableRow* row;
+  std::vector<std::optional<double>> value;  ///< mm or rad; none where the cell is empty or wrong
+  [[nodiscard]] bool Empty(int column) const {
+    return column < 0 || row->cells[static_cast<std::size_t>(column)].text.empty();
+  }
+};
+
+class RowReader {
+ public:
+  RowReader(const Columns& columns,
+            const Table& table,
+            const kinematics::Machine& machine,
+            Complaints& complaints)
+      : columns_(columns),
+        table_(table),
+        drives_(static_cast<int>(machine.drives().size())),
+        order_(machine.layout().rotation_order),
+        complaints_(complaints) {}
+
+  std::optional<Measurement> Read(const TableRow& row) {
+    if (row.cells.size() != columns_.columns.size()) {
+      complaints_.Add(
+          Severity::kError,
+          "E0407",
+          row.begin,
+          row.end,
+          fmt::format(
+              "the row has {} cells, the header {}", row.cells.size(), columns_.columns.size()),
+          "empty cells need their separators too");
+      return std::nullopt;
+    }
+    good_ = true;
+    const RowCells cells = ReadCells(row);
+    Measurement measurement;
+    measurement.line = row.line;
+    const std::optional<MeasurementKind> kind = KindOfRow(cells);
+    ReadReadings(cells, kind, measurement);
+    if (kind) {
+      measurement.kind = *kind;
+      ReadMeasured(cells, measurement);
+    }
+    ReadSigmas(cells, measurement);
+    ReadHeldOut(cells, measurement);
+    if (!good_) return std::nullopt;
+    return measurement;
+  }
+
+ private:
+  RowCells ReadCells(const TableRow& row) {
+    RowCells cells{&row, std::vector<std::optional<double>>(row.cells.size())};
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const Column& column = columns_.columns[i];
+      const bool number = column.role != Role::kIgnored && column.role != Role::kKind &&
+                          column.role != Role::kHeldOut;
+      if (!number || row.cells[i].text.empty()) continue;
+      cells.value[i] = NumberOf(row.cells[i], complaints_);
+      if (cells.value[i]) {
+        *cells.value[i] *= column.to_internal;
+      } else {
+        good_ = false;
+      }
+    }
+    return cells;
+  }
+
+  std::optional<MeasurementKind> KindOfRow(const RowCells& cells) {
+    const int column = columns_.Find(Role::kKind);
+    if (!cells.Empty(column)) {
+      const Cell& cell = cells.row->cells[static_cast<std::size_t>(column)];
+      const std::optional<MeasurementKind> kind = KindOf(cell.text);
+      if (!kind) {
+        complaints_.Error("E0410",
+                          cell,
+                          fmt::format("unknown kind of measurement '{}'", cell.text),
+                          DidYouMean(cell.text, KindNames()));
+        good_ = false;
+      }
+      return kind;
+    }
+    return GuessKind(cells);
+  }
+
+  /// What the filled cells leave no doubt about.
+  std::optional<MeasurementKind> GuessKind(const RowCells& cells) {
+    const bool value = Filled(cells, Role::kValue);
+    const bool second = Filled(cells, Role::kSecondReading);
+    const bool position = Filled(cells, Role::kPosition);
+    const bool turned = Filled(cells, Role::kRotationVector) || Filled(cells, Role::kAngle);
+    if (value && !position && !turned) {
+      return second ? MeasurementKind::kDistance : MeasurementKind::kHeight;
+    }
+    if (position && !value && !second) {
+      return turned ? MeasurementKind::kPose : MeasurementKind::kPosition;
+    }
+    Refuse(cells,
+           "E0416",
+           value || position ? "the row may be of more than one kind"
+                             : "the row does not tell what was measured",
+           value || position
+               ? "name it in a column 'kind': height, distance, position or pose"
+               : "fill value_mm (height, distance) or x_mm, y_mm, z_mm (position, pose)");
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool Filled(const RowCells& cells, Role role) const {
+    for (std::size_t i = 0; i < columns_.columns.size(); ++i) {
+      if (columns_.columns[i].role == role && !cells.row->cells[i].text.empty()) return true;
+    }
+    return false;
+  }
+
+  void Refuse(const RowCells& cells, std::string code, std::string message, std::string help = "") {
+    complaints_.Add(Severity::kError,
+                    std::move(code),
+                    cells.row->begin,
+                    cells.row->end,
+                    std::move(message),
+                    std::move(help));
+    good_ = false;
+  }
+
+  /// The cell's number; complains if the row's kind needs it and it is not there.
+  double Needed(const RowCells& cells, Role role, int index, std::string_view what) {
+    const int column = columns_.Find(role, index);
+    if (cells.Empty(column)) {
+      if (column < 0) {
+        Refuse(cells, "E0411", fmt::format("a {} and no column for it", what));
+      } else {
+        const Cell& cell = cells.row->cells[static_cast<std::size_t>(column)];
+        complaints_.Error("E0411",
+                          cell,
+                          fmt::format("'{}' is empty, but the row is a {}",
+                                      table_.header.cells[static_cast<std::size_t>(column)].text,
+                                      what));
+      }
+      good_ = false;
+      return 0.0;
+    }
+    return cells.value[static_cast<std::size_t>(column)].value_or(0.0);
+  }
+
+  void ReadReadings(const RowCells& cells,
+                    std::optional<MeasurementKind> kind,
+                    Measurement& measurement) {
+    measurement.readings.resize(drives_);
+    for (int i = 0; i < drives_; ++i) {
+      if (columns_.Find(Role::kReading, i) < 0) return;  // the header's complaint says it all
+      measurement.readings[i] = Needed(cells, Role::kReading, i, "measurement");
+    }
+    if (kind != MeasurementKind::kDistance) return;
+    if (!columns_.Has(Role::kSecondReading)) {
+      Refuse(cells,
+             "E0411",
+             "a distance needs the readings at its second point",
+             "add columns second.<drive>_mm");
+      return;
+    }
+    measurement.second_readings.resize(drives_);
+    for (int i = 0; i < drives_; ++i) {
+      if (columns_.Find(Role::kSecondReading, i) < 0) return;
+      measurement.second_readings[i] = Needed(cells, Role::kSecondReading, i, "distance");
+    }
+  }
+
+  void ReadMeasured(const RowCells& cells, Measurement& measurement) {
+    const std::string_view what = Name(measurement.kind);
+    switch (measurement.kind) {
+      case MeasurementKind::kHeight:
+      case MeasurementKind::kDistance:
+        measurement.value_mm = Needed(cells, Role::kValue, 0, what);
+        if (measurement.kind == MeasurementKind::kDistance && measurement.value_mm < 0.0) {
+          complaints_.Error("E0412", CellOf(cells, Role::kValue), "a distance cannot be negative");
+          good_ = false;
+        }
+        return;
+      case MeasurementKind::kPosition:
+        ReadPosition(cells, measurement);
+        return;
+      case MeasurementKind::kPose:
+        for (int i = 0; i < 3; ++i) {
+          measurement.position_mm[static_cast<std::size_t>(i)] =
+              Needed(cells, Role::kPosition, i, what);
+        }
+        ReadOrientation(cells, measurement);
+        return;
+    }
+  }
+
+  void ReadPosition(const RowCells& cells, Measurement& measurement) {
+    for (int i = 0; i < 3; ++i) {
+      const int column = columns_.Find(Role::kPosition, i);
+      if (cells.Empty(column)) continue;
+      measurement.position_mm[static_cast<std::size_t>(i)] =
+          cells.value[static_cast<std::size_t>(column)];
+    }
+    if (!Filled(cells, Role::kPosition)) {
+      Refuse(cells, "E0411", "a position needs at least one of x_mm, y_mm, z_mm");
+    }
+  }
+
+  void ReadOrientation(const RowCells& cells, Measurement& measurement) {
+    const bool vector = Filled(cells, Role::kRotationVector);
+    const bool angles = Filled(cells, Role::kAngle);
+    if (vector == angles) {
+      Refuse(cells,
+             "E0411",
+             vector ? "the row gives its orientation twice" : "a pose needs an orientation",
+             "fill either rx_rad, ry_rad, rz_rad or a_deg, b_deg, c_deg");
+      return;
+    }
+    const Role role = vector ? Role::kRotationVector : Role::kAngle;
+    Eigen::Vector3d numbers;
+    for (int i = 0; i < 3; ++i) numbers[i] = Needed(cells, role, i, "pose");
+    if (vector) {
+      measurement.R_WT = RotationFromVector(numbers);
+    } else {
+      kinematics::PoseNumbers pose;
+      for (std::size_t i = 0; i < 3; ++i) {
+        pose.value[i + 3] = numbers[static_cast<Eigen::Index>(i)];
+      }
+      measurement.R_WT = kinematics::PoseFromNumbers(pose, order_).R;
+    }
+  }
+
+  void ReadSigmas(const RowCells& cells, Measurement& measurement) {
+    measurement.sigma_mm = Sigma(cells, Role::kSigmaLength);
+    measurement.sigma_rad = Sigma(cells, Role::kSigmaAngle);
+  }
+
+  std::optional<double> Sigma(const RowCells& cells, Role role) {
+    const int column = columns_.Find(role);
+    if (cells.Empty(column)) return std::nullopt;
+    const std::optional<double> sigma = cells.value[static_cast<std::size_t>(column)];
+    if (sigma && *sigma <= 0.0) {
+      complaints_.Error("E0412",
+                        CellOf(cells, role),
+                        "a standard deviation must be greater than 0",
+                        "leave the cell empty if it is not known");
+      good_ = false;
+    }
+    return sigma;
+  }
+
+  void ReadHeldOut(const RowCells& cells, Measurement& measurement) {
+    const int column = columns_.Find(Role::kHeldOut);
+    if (cells.Empty(column)) return;
+    const Cell& cell = CellOf(cells, Role::kHeldOut);
+    if (cell.text == "1" || cell.text == "yes" || cell.text == "true") {
+      measurement.held_out = true;
+    } else if (cell.text != "0" && cell.text != "no" && cell.text != "false") {
+      complaints_.Error("E0413",
+                        cell,
+                        fmt::format("'{}' is neither yes nor no", cell.text),
+                        "write 1 for a row that is kept out of the fit, else 0 or nothing");
+      good_ = false;
+    }
+  }
+
+  const Cell& CellOf(const RowCells& cells, Role role) const {
+    return cells.row->cells[static_cast<std::size_t>(columns_.Find(role))];
+  }
+
+  const Columns& columns_;
+  const Table& table_;
+  int drives_;
+  layout::RotationOrder order_;
+  Complaints& complaints_;
+  bool good_ = true;
+};
+
+/// A row typed twice counts twice in the fit without anybody wanting it.
+void WarnOfRepeatedRows(std::string_view text, const Table& table, Complaints& complaints) {
+  std::map<std::string_view, int> seen;
+  for (const TableRow& row : table.rows) {
+    const std::string_view whole = text.substr(row.begin, row.end - row.begin);
+    const auto [first, is_new] = seen.emplace(whole, row.line);
+    if (is_new) continue;
+    complaints.Add(Severity::kWarning,
+                   "W0414",
+                   row.begin,
+                   row.end,
+                   fmt::format("the row is the same as line {}", first->second),
+                   "it counts twice; remove it unless it was really measured twice");
+  }
+}
+
+}  // namespace
+
+std::string_view Name(MeasurementKind kind) {
+  switch (kind) {
+    case MeasurementKind::kHeight:
+      return "height";
+    case MeasurementKind::kDistance:
+      return "distance";
+    case MeasurementKind::kPosition:
+      return "position";
+    case MeasurementKind::kPose:
+      break;
+  }
+  return "pose";
+}
+
+std::size_t MeasurementSet::Count(bool held_out) const {
+  std::size_t count = 0;
+  for (const Measurement& measurement : measurements) {
+    count += measurement.held_out == held_out ? 1 : 0;
+  }
+  return count;
+}
+
+Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
+                                         std::string_view file,
+                                         const kinematics::Machine& machine,
+                                         const ReadOptions& options,
+                                         Diagnostics* notes) {
+  if (IsKlipperDelta(text)) return ImportKlipperDelta(text, file, machine, notes);
+  Complaints complaints(text, file);
+  const Table table = SplitTable(text);
+  MeasurementSet set{.file = std::string(file), .text = std::string(text)};
+  if (table.header.cells.empty() || table.rows.empty()) {
+    complaints.ErrorWithoutPlace(
+        "E0402",
+        table.header.cells.empty() ? "the file is empty" : "the file has a header and no rows",
+        "a header line with the columns' names, then one line for each measurement");
+    return tl::unexpected(complaints.Take());
+  }
+  const Columns columns = UnderstandHeader(table.header, machine, complaints);
+  if (!columns.Has(Role::kValue) && !columns.Has(Role::kPosition)) {
+    complaints.Add(Severity::kError,
+                   "E0404",
+                   table.header.begin,
+                   table.header.end,
+                   "no column for what was measured",
+                   "value_mm for heights and distances; x_mm, y_mm, z_mm for positions and poses");
+  }
+  if (!complaints.HasErrors()) {
+    RowReader reader(columns, table, machine, complaints);
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      std::optional<Measurement> measurement = reader.Read(table.rows[i]);
+      if (!measurement) continue;
+      measurement->row = static_cast<int>(i) + 1;
+      set.measurements.push_back(std::move(*measurement));
+    }
+    WarnOfRepeatedRows(text, table, complaints);
+  }
+  if (!complaints.HasErrors() && options.check_units) {
+    CheckUnits(machine, set, table.header, columns, complaints);
+  }
+  const bool refused = complaints.HasErrors();
+  Diagnostics said = complaints.Take();
+  if (refused) return tl::unexpected(std::move(said));
+  if (notes != nullptr) notes->insert(notes->end(), said.begin(), said.end());
+  return set;
+}
+
+Parsed<MeasurementSet> ReadMeasurements(const std::filesystem::path& file,
+                                        const kinematics::Machine& machine,
+                                        const ReadOptions& options,
+                                        Diagnostics* notes) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    const bool empty = stream.is_open() && std::filesystem::is_regular_file(file);
+    return tl::unexpected(Diagnostics{
+        {.code = empty ? "E0402" : "E0401",
+         .file = file.string(),
+         .message = empty ? "the file is empty" : "cannot read the measurement file",
+         .help = empty ? "a header line with the columns' names, then one line for each measurement"
+                       : ""}});
+  }
+  return ParseMeasurements(text.str(), file.string(), machine, options, notes);
+}
+
+}  // namespace kompono::calibration

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "null_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace kompono::calibration {
+
+using kinematics::MeasuredPose;
+using kinematics::Parameter;
+
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kMoves = 1e-6;  ///< of what the parts alone would move
+constexpr std::size_t kMostNamed = 8;
+
+/// "struts.base[3].x" -> "struts.base[*].x"
+std::string WithoutIndex(const std::string& name) {
+  const std::size_t open = name.find('[');
+  const std::size_t close = name.find(']', open == std::string::npos ? 0 : open);
+  if (open == std::string::npos || close == std::string::npos) return name;
+  return name.substr(0, open + 1) + "*" + name.substr(close);
+}
+
+struct Part {
+  std::string name;
+  double value = 0.0;  ///< mm or deg
+  bool angle = false;
+  int count = 1;
+};
+
+/// Parts with equal changes whose names differ in the index only become one, if they are all that
+/// the machine has.
+std::vector<Part> Grouped(const std::vector<Parameter>& parameters, const Eigen::VectorXd& change) {
+  std::map<std::string, int> of_pattern;
+  for (const Parameter& parameter : parameters) ++of_pattern[WithoutIndex(parameter.name)];
+  std::map<std::string, std::vector<Part>> groups;
+  std::vector<std::string> order;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = change[static_cast<Eigen::Index>(i)];
+    if (value == 0.0) continue;
+    const std::string pattern = WithoutIndex(parameters[i].name);
+    std::vector<Part>& group = groups[pattern];
+    if (group.empty()) order.push_back(pattern);
+    group.push_back({parameters[i].name,
+                     parameters[i].angle ? value * kDegPerRad : value,
+                     parameters[i].angle});
+  }
+  std::vector<Part> parts;
+  for (const std::string& pattern : order) {
+    const std::vector<Part>& group = groups[pattern];
+    const bool all = group.size() > 1 && static_cast<int>(group.size()) == of_pattern[pattern];
+    const bool equal = std::all_of(group.begin(), group.end(), [&group](const Part& part) {
+      return std::abs(part.value - group.front().value) <= 1e-5 * std::abs(group.front().value);
+    });
+    if (all && equal) {
+      parts.push_back(
+          {pattern, group.front().value, group.front().angle, static_cast<int>(group.size())});
+    } else {
+      parts.insert(parts.end(), group.begin(), group.end());
+    }
+  }
+  return parts;
+}
+
+std::string Names(const std::vector<Part>& parts) {
+  std::vector<std::string> names;
+  for (const Part& part : parts) {
+    if (names.size() == kMostNamed) {
+      names.push_back(fmt::format("and {} more", parts.size() - kMostNamed));
+      break;
+    }
+    names.push_back(part.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string Changes(const std::vector<Part>& parts) {
+  std::vector<std::string> changes;
+  for (const Part& part : parts) {
+    if (changes.size() == kMostNamed) {
+      changes.emplace_back("…");
+      break;
+    }
+    changes.push_back(
+        fmt::format("{} {:+.3g} {}", part.name, part.value, part.angle ? "deg" : "mm"));
+  }
+  return fmt::format("{}", fmt::join(changes, ", "));
+}
+
+std::string Words(const std::vector<Part>& parts) {
+  if (parts.size() == 1 && parts[0].count == 1) {
+    return fmt::format("{} has no effect on these measurements", parts[0].name);
+  }
+  if (parts.size() == 2 && parts[0].angle == parts[1].angle && parts[0].count == 1 &&
+      parts[1].count == 1) {
+    const double ratio = parts[1].value / parts[0].value;
+    const double most = 1e-5;
+    if (std::abs(ratio + 1.0) < most || std::abs(ratio - 1.0) < most) {
+      return fmt::format("{} and {} can only be told apart up to their {}",
+                         parts[0].name,
+                         parts[1].name,
+                         ratio < 0.0 ? "sum" : "difference");
+    }
+  }
+  return fmt::format("{} cannot be told apart: together they may change without any effect ({})",
+                     Names(parts),
+                     Changes(parts));
+}
+
+}  // namespace
+
+void NullWords::Motion::Add(const MeasuredPose& pose, const Eigen::VectorXd& change) {
+  Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    if (change[i] == 0.0) continue;
+    const Eigen::Matrix<double, 6, 1> part = pose.by_parameters.col(i) * change[i];
+    twist += part;
+    v_parts = std::max(v_parts, part.head<3>().norm());
+    w_parts = std::max(w_parts, part.tail<3>().norm());
+  }
+  v = v.cwiseMax(twist.head<3>().cwiseAbs());
+  w = w.cwiseMax(twist.tail<3>().cwiseAbs());
+}
+
+bool NullWords::Motion::Moves(int axis) const {
+  return v_parts > 1e-12 && v[axis] > kMoves * v_parts;
+}
+
+bool NullWords::Motion::Turns() const {
+  return w_parts > 1e-15 && w.maxCoeff() > kMoves * w_parts;
+}
+
+NullWords::NullWords(const kinematics::Machine& machine,
+                     const std::vector<RowModel*>& rows,
+                     const Eigen::VectorXd& theta)
+    : machine_(machine), rows_(rows), theta_(theta) {
+  for (const RowModel* row : rows) {
+    RowModel::Prediction prediction = row->Predict(theta, true);
+    if (!prediction.ok()) continue;
+    poses_.push_back(std::move(prediction.first));
+    if (row->measurement().kind == MeasurementKind::kDistance) {
+      poses_.push_back(std::move(prediction.second));
+    }
+  }
+}
+
+NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
+  NullDirection direction;
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    if (change[i] == 0.0) continue;
+    direction.parts.emplace_back(machine_.parameters()[static_cast<std::size_t>(i)].name,
+                                 change[i]);
+  }
+  const std::vector<Part> parts = Grouped(machine_.parameters(), change);
+  direction.words = Words(parts);
+  const bool single = direction.parts.size() == 1;
+  const std::string measure = Remedy(change);
+  if (!measure.empty()) {
+    direction.remedy = (single ? "lock it, or " : "lock one of them, or ") + measure;
+  } else if (single) {
+    direction.remedy = "lock it; no measurement of this tool can see it";
+  } else {
+    direction.remedy = "lock one of them; no measurement of this tool can tell them apart";
+  }
+  return direction;
+}
+
+std::string NullWords::Remedy(const Eigen::VectorXd& change) const {
+  Motion here;
+  for (const MeasuredPose& pose : poses_) here.Add(pose, change);
+  constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+  std::vector<std::string_view> moved;
+  for (int i = 0; i < 3; ++i) {
+    if (here.Moves(i)) moved.push_back(kAxes[static_cast<std::size_t>(i)]);
+  }
+  if (!moved.empty()) {
+    return fmt::format("measure the tool point's {} as well", fmt::join(moved, ", "));
+  }
+  if (here.Turns()) return "measure the tool's orientation as well (poses)";
+  return OtherReadings(change);
+}
+
+NullWords::Motion NullWords::MotionAtShifted(const Eigen::VectorXd& change,
+                                             const std::vector<bool>& drives) const {
+  Motion motion;
+  constexpr std::array<double, 6> kPattern{1.0, -0.6, 0.35, -0.85, 0.5, -0.2};
+  for (const RowModel* row : rows_) {
+    Eigen::VectorXd readings = row->measurement().readings;
+    for (Eigen::Index i = 0; i < readings.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!drives[k]) continue;
+      const double step = machine_.drives()[k].rotary ? 0.1 : 10.0;
+      readings[i] +=
+          step * kPattern[(k + static_cast<std::size_t>(row->measurement().row)) % kPattern.size()];
+    }
+    const MeasuredPose pose = machine_.Measure(readings, theta_, machine_.home(), true);
+    if (pose.status == kinematics::SolveStatus::kConverged) motion.Add(pose, change);
+  }
+  return motion;
+}
+
+/// Drives that stood still in all rows are tried first: moving one of them is the usual way out.
+std::string NullWords::OtherReadings(const Eigen::VectorXd& change) const {
+  const std::size_t count = machine_.drives().size();
+  std::vector<bool> still(count, true);
+  for (const RowModel* row : rows_) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (std::abs(row->measurement().readings[k] - rows_.front()->measurement().readings[k]) >
+          1e-9) {
+        still[i] = false;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!still[i]) continue;
+    std::vector<bool> one(count, false);
+    one[i] = true;
+    if (MotionAtShifted(change, one).Any()) {
+      return fmt::format("measure at other positions of {} too", machine_.drives()[i].name);
+    }
+  }
+  if (MotionAtShifted(change, std::vector<bool>(count, true)).Any()) {
+    return "measure at more and more different places and orientations";
+  }
+  return {};
+}
+
+}  // namespace kompono::calibration

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "statistics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace kompono::calibration {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+/// Normal deviates larger than this happen once in 3.5 million.
+constexpr double kSurelyWrong_sigmas = 5.0;
+constexpr double kFarFromNominal_tolerances = 20.0;
+
+struct Sums {
+  int count = 0;
+  double before = 0.0, after = 0.0;
+  double max_before = 0.0, max_after = 0.0;
+  void Add(double error_before, double error_after) {
+    ++count;
+    before += error_before * error_before;
+    after += error_after * error_after;
+    max_before = std::max(max_before, error_before);
+    max_after = std::max(max_after, error_after);
+  }
+};
+
+std::string_view LengthQuantity(MeasurementKind kind) {
+  return kind == MeasurementKind::kPose ? "position" : Name(kind);
+}
+
+void AddStatistics(const std::map<std::pair<bool, std::string>, Sums>& sums,
+                   CalibrationReport* report) {
+  for (const auto& [key, sum] : sums) {
+    report->statistics.push_back({.quantity = key.second,
+                                  .angle = key.second == "orientation",
+                                  .held_out = key.first,
+                                  .count = sum.count,
+                                  .rms_before = std::sqrt(sum.before / sum.count),
+                                  .rms_after = std::sqrt(sum.after / sum.count),
+                                  .max_before = sum.max_before,
+                                  .max_after = sum.max_after});
+  }
+}
+
+/// Median of the absolute values, as a standard deviation.
+double RobustSigma(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return 1.4826 * *middle;
+}
+
+/// Upper 0.1 % point of chi²/dof, Wilson and Hilferty's approximation.
+double SurelyTooLarge(int dof) {
+  const double spread = 2.0 / (9.0 * dof);
+  const double root = 1.0 - spread + 3.0902 * std::sqrt(spread);
+  return root * root * root;
+}
+
+Diagnostic Warning(const MeasurementSet& set,
+                   std::string code,
+                   std::string message,
+                   std::string help = "") {
+  return {.severity = Severity::kWarning,
+          .code = std::move(code),
+          .file = set.file,
+          .message = std::move(message),
+          .help = std::move(help)};
+}
+
+void WarnOfContradiction(const MeasurementSet& set, CalibrationReport* report) {
+  if (report->dof <= 0 || report->sigma_assumed) return;
+  const double ratio = report->chi_squared / report->dof;
+  if (ratio < SurelyTooLarge(report->dof)) return;
+  report->diagnostics.push_back(
+      Warning(set,
+              "W0454",
+              fmt::format("the errors left are {:.3g} times what the given deviations allow: the "
+                          "measurements contradict each other or this model of the machine",
+                          std::sqrt(ratio)),
+              "look at the rows with the largest residuals, free more parameters, or give larger "
+              "deviations"));
+}
+
+/// Rows that stand out of the others, judged by a scale that they do not influence.
+void WarnOfOutliers(const MeasurementSet& set, CalibrationReport* report) {
+  std::vector<double> sigmas;
+  for (const RowResidual& row : report->rows) {
+    if (!row.held_out) sigmas.push_back(row.after_sigmas);
+  }
+  const double scale = std::max(RobustSigma(sigmas), 1e-9);
+  if (report->dof < 3) return;
+  for (std::size_t i = 0; i < report->rows.size(); ++i) {
+    const RowResidual& row = report->rows[i];
+    if (row.held_out || row.after_sigmas < kSurelyWrong_sigmas * scale) continue;
+    if (row.after_sigmas < 1e-3) continue;  // rounding of noise-free data
+    report->diagnostics.push_back(AboutRow(set,
+                                           set.measurements[i],
+                                           Severity::kWarning,
+                                           "W0455",
+                                           fmt::format("row {} is off by {:.3g} times the usual "
+                                                       "error of the rows ({:.4g} mm)",
+                                                       row.row,
+                                                       row.after_sigmas / scale,
+                                                       row.after_mm),
+                                           "measure it again or leave it out"));
+  }
+}
+
+void WarnOfParameters(const MeasurementSet& set, CalibrationReport* report) {
+  for (const IdentifiedParameter& parameter : report->parameters) {
+    if (parameter.at_bound) {
+      report->diagnostics.push_back(
+          Warning(set, "W0457", fmt::format("{} ended at its bound", parameter.name)));
+    }
+    const double most = kFarFromNominal_tolerances * parameter.tolerance;
+    if (parameter.tolerance > 0.0 && std::abs(parameter.change()) > most) {
+      const double factor = parameter.angle ? kDegPerRad : 1.0;
+      report->diagnostics.push_back(
+          Warning(set,
+                  "W0456",
+                  fmt::format("{} changed by {:+.4g} {}, {:.0f} times its manufacturing tolerance",
+                              parameter.name,
+                              parameter.change() * factor,
+                              parameter.angle ? "deg" : "mm",
+                              std::abs(parameter.change()) / parameter.tolerance),
+                  "check the layout's number and the measurements for a slip"));
+    }
+  }
+}
+
+void WarnOfHeldOut(const MeasurementSet& set, CalibrationReport* report) {
+  for (const ErrorStatistics& held_out : report->statistics) {
+    if (!held_out.held_out || held_out.count < 3) continue;
+    if (held_out.rms_after > held_out.rms_before) {
+      report->diagnostics.push_back(Warning(
+          set,
+          "W0459",
+          fmt::format("the held-out rows became worse: {} RMS {:.4g} before, {:.4g} {} after",
+                      held_out.quantity,
+                      held_out.rms_before,
+                      held_out.rms_after,
+                      held_out.angle ? "rad" : "mm"),
+          "free fewer parameters or measure more"));
+    }
+  }
+}
+
+}  // namespace
+
+Diagnostic AboutRow(const MeasurementSet& set,
+                    const Measurement& measurement,
+                    Severity severity,
+                    std::string code,
+                    std::string message,
+                    std::string help) {
+  Diagnostic diagnostic{.severity = severity,
+                        .code = std::move(code),
+                        .file = set.file,
+                        .message = std::move(message),
+                        .help = std::move(help)};
+  if (measurement.line > 0) {
+    diagnostic.span = SpanAt(set.text, measurement.line, 1, 1);
+    diagnostic.span.length = std::max<int>(1, static_cast<int>(diagnostic.span.line_text.size()));
+  }
+  return diagnostic;
+}
+
+void JudgeRows(const MeasurementSet& set,
+               std::vector<JudgedRow>& rows,
+               const Eigen::VectorXd& theta,
+               CalibrationReport* report) {
+  std::map<std::pair<bool, std::string>, Sums> sums;
+  for (JudgedRow& row : rows) {
+    const Measurement& measurement = row.model.measurement();
+    const RowModel::Prediction prediction = row.model.Predict(theta, false);
+    if (!prediction.ok()) {
+      report->status = IdentifyStatus::kForwardFailed;
+      report->diagnostics.push_back(AboutRow(
+          set,
+          measurement,
+          Severity::kError,
+          "E0451",
+          fmt::format("row {}: with the identified geometry the machine has no pose at these "
+                      "readings ({})",
+                      measurement.row,
+                      Name(prediction.status())),
+          "check the readings of the row"));
+      continue;
+    }
+    const RowErrors after = row.model.Errors(prediction);
+    RowResidual residual{.row = measurement.row,
+                         .line = measurement.line,
+                         .kind = measurement.kind,
+                         .held_out = row.held_out,
+                         .before_mm = row.before.LengthNorm(),
+                         .after_mm = after.LengthNorm()};
+    residual.after_sigmas = row.model.Whitened(prediction).value.norm() /
+                            std::sqrt(static_cast<double>(row.model.size()));
+    sums[{row.held_out, std::string(LengthQuantity(measurement.kind))}].Add(residual.before_mm,
+                                                                            residual.after_mm);
+    if (measurement.kind == MeasurementKind::kPose) {
+      residual.before_rad = row.before.AngleNorm();
+      residual.after_rad = after.AngleNorm();
+      sums[{row.held_out, "orientation"}].Add(residual.before_rad, residual.after_rad);
+    }
+    report->rows.push_back(residual);
+  }
+  AddStatistics(sums, report);
+}
+
+void JudgeParameters(const kinematics::Machine& machine,
+                     const Selection& selection,
+                     const RankAnalysis& analysis,
+                     const std::vector<bool>& at_bound,
+                     const IdentifyOptions& options,
+                     const std::vector<JudgedRow>& rows,
+                     CalibrationReport* report) {
+  const double variance = report->sigma_assumed ? report->sigma0 * report->sigma0 : 1.0;
+  report->covariance = variance * (selection.scale.asDiagonal() * analysis.covariance *
+                                   selection.scale.asDiagonal());
+  for (Eigen::Index i = 0; i < selection.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const kinematics::Parameter& parameter =
+        machine.parameters()[static_cast<std::size_t>(selection.free[k])];
+    IdentifiedParameter identified{.name = parameter.name,
+                                   .angle = parameter.angle,
+                                   .before = report->theta_before[selection.free[k]],
+                                   .after = report->theta_after[selection.free[k]],
+                                   .tolerance = parameter.tolerance,
+                                   .at_bound = at_bound[k]};
+    identified.determined = analysis.null_unit.row(i).norm() < 1e-6;
+    const bool scaled_without_dof = report->sigma_assumed && report->dof <= 0;
+    if (identified.determined && !at_bound[k] && !scaled_without_dof) {
+      identified.sigma = std::sqrt(report->covariance(i, i));
+    }
+    report->parameters.push_back(identified);
+  }
+  for (Eigen::Index i = 0; i < selection.size(); ++i) {
+    for (Eigen::Index j = i + 1; j < selection.size(); ++j) {
+      const IdentifiedParameter& first = report->parameters[static_cast<std::size_t>(i)];
+      const IdentifiedParameter& second = report->parameters[static_cast<std::size_t>(j)];
+      if (!first.sigma || !second.sigma) continue;
+      const double correlation = report->covariance(i, j) / (*first.sigma * *second.sigma);
+      if (std::abs(correlation) > options.correlation_threshold) {
+        report->correlated.push_back({first.name, second.name, correlation});
+      }
+    }
+  }
+  double sum = 0.0;
+  int count = 0;
+  for (const JudgedRow& row : rows) {
+    if (row.held_out) continue;
+    const RowModel::Prediction prediction = row.model.Predict(report->theta_after, true);
+    if (!prediction.ok()) continue;
+    Eigen::MatrixXd J(3, selection.size());
+    for (Eigen::Index i = 0; i < selection.size(); ++i) {
+      J.col(i) =
+          prediction.first.by_parameters.col(selection.free[static_cast<std::size_t>(i)]).head<3>();
+    }
+    const double square = (J * report->covariance * J.transpose()).trace();
+    sum += square;
+    report->tool_sigma_max_mm = std::max(report->tool_sigma_max_mm, std::sqrt(square));
+    ++count;
+  }
+  if (count > 0) report->tool_sigma_rms_mm = std::sqrt(sum / count);
+}
+
+void WarnOfDoubts(const MeasurementSet& set,
+                  const Selection& selection,
+                  CalibrationReport* report) {
+  for (const NullDirection& direction : report->unidentifiable) {
+    report->diagnostics.push_back(Warning(set, "W0453", direction.words, direction.remedy));
+  }
+  if (report->dof == 0) {
+    report->diagnostics.push_back(
+        Warning(set,
+                "W0452",
+                fmt::format("{} numbers for {} unknowns: the fit is exact whatever was measured, "
+                            "and its errors say nothing",
+                            report->numbers,
+                            selection.size()),
+                "measure more"));
+  }
+  WarnOfContradiction(set, report);
+  WarnOfOutliers(set, report);
+  WarnOfParameters(set, report);
+  WarnOfHeldOut(set, report);
+}
+
+}  // namespace kompono::calibration

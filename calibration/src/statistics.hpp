@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CALIBRATION_SRC_STATISTICS_HPP_
+#define KOMPONO_CALIBRATION_SRC_STATISTICS_HPP_
+
+#include "identifiability.hpp"
+#include "residuals.hpp"
+#include "selection.hpp"
+
+#include <vector>
+
+#include "kompono/calibration/identification.hpp"
+
+namespace kompono::calibration {
+
+/// A row with what was predicted of it at first and at last.
+struct JudgedRow {
+  RowModel model;
+  bool held_out = false;
+  RowErrors before;
+};
+
+/// Errors of every row at `theta`, into the report's rows and tables. A row without a pose becomes
+/// a complaint and the status kForwardFailed.
+void JudgeRows(const MeasurementSet& set,
+               std::vector<JudgedRow>& rows,
+               const Eigen::VectorXd& theta,
+               CalibrationReport* report);
+
+/// Parameters with deviations, bounds and correlations; the tool's predicted deviation.
+void JudgeParameters(const kinematics::Machine& machine,
+                     const Selection& selection,
+                     const RankAnalysis& analysis,
+                     const std::vector<bool>& at_bound,
+                     const IdentifyOptions& options,
+                     const std::vector<JudgedRow>& rows,
+                     CalibrationReport* report);
+
+/// Warnings about a result that can be used but should be looked at.
+void WarnOfDoubts(const MeasurementSet& set, const Selection& selection, CalibrationReport* report);
+
+/// A complaint about one row, with the row's line under it if the set has its text.
+[[nodiscard]] Diagnostic AboutRow(const MeasurementSet& set,
+                                  const Measurement& measurement,
+                                  Severity severity,
+                                  std::string code,
+                                  std::string message,
+                                  std::string help);
+
+}  // namespace kompono::calibration
+
+#endif  // KOMPONO_CALIBRATION_SRC_STATISTICS_HPP_
