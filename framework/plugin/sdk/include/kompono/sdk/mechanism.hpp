@@ -168,40 +168,34 @@ class AutodiffMechanism : public plugin::Mechanism {
            quantity == plugin::Quantity::kCoordinates;
   }
 
-  /// Storage for one evaluation with scalar T; unread inputs stay zero.
+  /// Storage for one evaluation with scalar T: x, then q, then parameters, then modes, numbered as
+  /// the variables of a recorded formula are. Unread inputs stay zero.
   template <class T>
   struct Workspace {
-    std::array<T, static_cast<std::size_t>(Nx() + 1)> x{};
-    std::array<T, static_cast<std::size_t>(Nq() + 1)> q{};
-    std::array<T, static_cast<std::size_t>(Np() + 1)> parameter{};
-    std::array<T, static_cast<std::size_t>(Nm() + 1)> mode{};
+    std::array<T, static_cast<std::size_t>(Nx() + Nq() + Np() + Nm())> variable{};
 
     [[nodiscard]] Arguments<T> View() const {
-      return {.x = {x.data(), static_cast<std::size_t>(Nx())},
-              .q = {q.data(), static_cast<std::size_t>(Nq())},
-              .parameter = {parameter.data(), static_cast<std::size_t>(Np())},
-              .mode = {mode.data(), static_cast<std::size_t>(Nm())}};
-    }
-    /// The variable numbered as in recorded formulas: x, then q, then parameters, then modes.
-    [[nodiscard]] T& At(int variable) {
-      if (variable < Nx()) return x[static_cast<std::size_t>(variable)];
-      if (variable < Nx() + Nq()) return q[static_cast<std::size_t>(variable - Nx())];
-      if (variable < Nx() + Nq() + Np()) {
-        return parameter[static_cast<std::size_t>(variable - Nx() - Nq())];
-      }
-      return mode[static_cast<std::size_t>(variable - Nx() - Nq() - Np())];
+      const std::span<const T> all(variable);
+      return {.x = all.subspan(0, Count(Nx())),
+              .q = all.subspan(Count(Nx()), Count(Nq())),
+              .parameter = all.subspan(Count(Nx() + Nq()), Count(Np())),
+              .mode = all.subspan(Count(Nx() + Nq() + Np()), Count(Nm()))};
     }
   };
+  static constexpr std::size_t Count(int number) { return static_cast<std::size_t>(number); }
 
   template <class T>
   static void Load(const plugin::MechanismState& state, Workspace<T>& workspace) {
-    const auto copy = [](std::span<const double> from, auto& to) {
-      for (std::size_t i = 0; i < from.size(); ++i) to[i] = T(from[i]);
+    const auto copy = [&workspace](std::span<const double> from, int first) {
+      std::transform(
+          from.begin(), from.end(), workspace.variable.begin() + first, [](double number) {
+            return T(number);
+          });
     };
-    copy(state.coordinates, workspace.x);
-    copy(state.drives, workspace.q);
-    copy(state.parameters, workspace.parameter);
-    copy(state.modes, workspace.mode);
+    copy(state.coordinates, 0);
+    copy(state.drives, Nx());
+    copy(state.parameters, Nx() + Nq());
+    copy(state.modes, Nx() + Nq() + Np());
   }
 
   /// Calls the author's template.
@@ -300,7 +294,7 @@ class AutodiffMechanism : public plugin::Mechanism {
     using J = Jet<double, N>;
     Workspace<J> workspace;
     Load(state, workspace);
-    for (int i = 0; i < count; ++i) workspace.At(first + i).v[i] = 1.0;
+    for (int i = 0; i < count; ++i) workspace.variable[Count(first + i)].v[i] = 1.0;
     std::array<J, MaximalRows()> values{};
     const std::size_t rows = Rows(quantity);
     const plugin::Status status =
@@ -352,8 +346,9 @@ class AutodiffMechanism : public plugin::Mechanism {
     for (std::size_t begin = 0; begin < batch.count; begin += kPackLanes) {
       const std::size_t lanes = std::min(kPackLanes, batch.count - begin);
       if (ReadsCoordinates(quantity))
-        LoadColumns(batch.coordinates, Nx(), begin, lanes, workspace.x);
-      if (ReadsDrives(quantity)) LoadColumns(batch.drives, Nq(), begin, lanes, workspace.q);
+        LoadColumns(batch.coordinates, Nx(), begin, lanes, workspace.variable.data());
+      if (ReadsDrives(quantity))
+        LoadColumns(batch.drives, Nq(), begin, lanes, workspace.variable.data() + Nx());
       const plugin::Status status =
           Run<Pack>(quantity, workspace.View(), std::span<Pack>(values.data(), rows));
       if (status != plugin::Status::kOk) return status;
@@ -371,15 +366,14 @@ class AutodiffMechanism : public plugin::Mechanism {
   }
 
   /// An unfilled pack at the end repeats the last pose.
-  template <class Array>
   static void LoadColumns(
-      const double* const* columns, int count, std::size_t begin, std::size_t lanes, Array& to) {
+      const double* const* columns, int count, std::size_t begin, std::size_t lanes, Pack* to) {
     for (int i = 0; i < count; ++i) {
       const double* column = columns[i] + begin;
       if (lanes == kPackLanes) {
-        to[static_cast<std::size_t>(i)].copy_from(column, std::experimental::element_aligned);
+        to[i].copy_from(column, std::experimental::element_aligned);
       } else {
-        to[static_cast<std::size_t>(i)] = Pack(
+        to[i] = Pack(
             [column, lanes](auto lane) { return column[std::min<std::size_t>(lane, lanes - 1)]; });
       }
     }
@@ -389,7 +383,8 @@ class AutodiffMechanism : public plugin::Mechanism {
                                             const plugin::FormulaReceiver& receiver) const {
     Recording recording;
     Workspace<Symbol> workspace;
-    for (int i = 0; i < Nx() + Nq() + Np() + Nm(); ++i) workspace.At(i) = Recording::Variable(i);
+    for (int i = 0; i < Nx() + Nq() + Np() + Nm(); ++i)
+      workspace.variable[Count(i)] = Recording::Variable(i);
     std::vector<Symbol> values(Rows(quantity));
     const plugin::Status status =
         Run<Symbol>(quantity, workspace.View(), std::span<Symbol>(values));
@@ -402,8 +397,9 @@ class AutodiffMechanism : public plugin::Mechanism {
     using J = Jet<Symbol, Nx()>;
     Recording recording;
     Workspace<J> workspace;
-    for (int i = 0; i < Nx() + Nq() + Np() + Nm(); ++i) workspace.At(i) = J(Recording::Variable(i));
-    for (int i = 0; i < Nx(); ++i) workspace.At(i).v[i] = Symbol(1.0);
+    for (int i = 0; i < Nx() + Nq() + Np() + Nm(); ++i)
+      workspace.variable[Count(i)] = J(Recording::Variable(i));
+    for (int i = 0; i < Nx(); ++i) workspace.variable[Count(i)].v[i] = Symbol(1.0);
     std::vector<J> values(Rows(quantity));
     const plugin::Status status = Run<J>(quantity, workspace.View(), std::span<J>(values));
     if (status != plugin::Status::kOk) return status;
