@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The laws every mechanism obeys: loops close, forward undoes inverse, packs and jets agree with
+// plain numbers.
+#include "shipped_machines.hpp"
+
+#include <set>
+
+namespace kompono {
+namespace {
+
+using kinematics::Machine;
+using kinematics::VectorXd;
+using plugin::Quantity;
+using plugin::Status;
+
+VectorXd LocalOf(const Machine::BlockView& view, const VectorXd& z) {
+  VectorXd x(static_cast<Eigen::Index>(view.coordinates.size()));
+  for (std::size_t i = 0; i < view.coordinates.size(); ++i) {
+    x[static_cast<Eigen::Index>(i)] = view.block->letters[i].sign * z[view.coordinates[i]];
+  }
+  return x;
+}
+
+class MechanismLaws : public testing::TestWithParam<std::string> {
+ protected:
+  MechanismLaws()
+      : machine_(tests::LoadMachine(GetParam())),
+        random_(tests::Seed()),
+        theta_(machine_.nominal()) {
+    poses_ = tests::PosesOf(machine_, 25, &random_);
+  }
+  [[nodiscard]] std::string Where(const tests::NamedPose& pose) const {
+    std::ostringstream text;
+    text << GetParam() << ", " << pose.kind << " z = " << pose.z.transpose() << ", seed "
+         << tests::Seed();
+    return text.str();
+  }
+  [[nodiscard]] std::span<const double> Parameters(const Machine::BlockView& view) const {
+    return {theta_.data() + view.first_parameter,
+            static_cast<std::size_t>(view.code->Shape().parameters)};
+  }
+
+  Machine machine_;
+  std::mt19937 random_;
+  VectorXd theta_;
+  std::vector<tests::NamedPose> poses_;
+};
+
+TEST_P(MechanismLaws, HomeIsReachableAndRegular) {
+  VectorXd readings;
+  VectorXd reach;
+  machine_.DrivesOf(machine_.home(), theta_, &readings, &reach);
+  EXPECT_TRUE(readings.allFinite()) << readings.transpose();
+  for (const kinematics::Singularity& s : machine_.Singularities(machine_.home(), theta_)) {
+    EXPECT_EQ(s.type, 0) << s.block << " margin " << s.margin;
+  }
+}
+
+TEST_P(MechanismLaws, LoopsCloseOnTheDrivesOfAPose) {
+  for (const tests::NamedPose& pose : poses_) {
+    for (const Machine::BlockView& view : machine_.blocks()) {
+      const plugin::MechanismShape shape = view.code->Shape();
+      const VectorXd x = LocalOf(view, pose.z);
+      std::vector<double> q(static_cast<std::size_t>(shape.drives));
+      std::vector<double> g(static_cast<std::size_t>(shape.closures));
+      const std::span<const double> xs(x.data(), static_cast<std::size_t>(x.size()));
+      ASSERT_EQ(view.code->Evaluate(
+                    Quantity::kDrives, {xs, {}, Parameters(view), view.modes}, {.values = q}),
+                Status::kOk);
+      ASSERT_EQ(view.code->Evaluate(
+                    Quantity::kClosure, {xs, q, Parameters(view), view.modes}, {.values = g}),
+                Status::kOk);
+      double size = 1.0;
+      for (const double number : q) size = std::max(size, std::abs(number));
+      for (const double number : Parameters(view)) size = std::max(size, std::abs(number));
+      for (const double residual : g)
+        EXPECT_LE(std::abs(residual), 1e-13 * size * size) << Where(pose);
+    }
+  }
+}
+
+TEST_P(MechanismLaws, ForwardUndoesInverse) {
+  for (const tests::NamedPose& pose : poses_) {
+    VectorXd readings;
+    machine_.DrivesOf(pose.z, theta_, &readings);
+    const kinematics::Solution back = machine_.Forward(readings);
+    ASSERT_TRUE(back.ok()) << Where(pose) << ": " << back.message;
+    const double size = std::max(1.0, readings.cwiseAbs().maxCoeff());
+    double margin = 1.0;
+    for (const auto& s : machine_.Singularities(pose.z, theta_))
+      margin = std::min(margin, s.margin_a);
+    EXPECT_LE((back.coordinates - pose.z).cwiseAbs().maxCoeff(), 1e-12 * size / margin)
+        << Where(pose);
+    VectorXd again;
+    machine_.DrivesOf(back.coordinates, theta_, &again);
+    EXPECT_LE((again - readings).cwiseAbs().maxCoeff(), 1e-9 * size) << Where(pose);
+  }
+}
+
+TEST_P(MechanismLaws, InverseOfTheToolPoseGivesTheCoordinatesBack) {
+  for (const tests::NamedPose& pose : poses_) {
+    const kinematics::PoseNumbers numbers =
+        kinematics::NumbersFromPose(machine_.ToolPose(pose.z, theta_), layout::RotationOrder::kXYZ);
+    kinematics::PoseTarget target;
+    for (std::size_t k = 0; k < 6; ++k) target.component[k] = numbers.value[k];
+    const kinematics::Solution solved = machine_.Inverse(target);
+    ASSERT_TRUE(solved.ok()) << Where(pose) << ": " << solved.message;
+    EXPECT_LE((solved.coordinates - pose.z).cwiseAbs().maxCoeff(), 1e-9) << Where(pose);
+  }
+}
+
+TEST_P(MechanismLaws, PacksAgreeWithSinglePoses) {
+  for (const Machine::BlockView& view : machine_.blocks()) {
+    const plugin::MechanismShape shape = view.code->Shape();
+    const std::size_t count = poses_.size();
+    std::vector<std::vector<double>> x(view.coordinates.size(), std::vector<double>(count));
+    std::vector<std::vector<double>> q(static_cast<std::size_t>(shape.drives),
+                                       std::vector<double>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const VectorXd local = LocalOf(view, poses_[k].z);
+      for (std::size_t i = 0; i < x.size(); ++i) x[i][k] = local[static_cast<Eigen::Index>(i)];
+    }
+    std::vector<const double*> x_columns;
+    std::vector<double*> q_columns;
+    for (auto& column : x) x_columns.push_back(column.data());
+    for (auto& column : q) q_columns.push_back(column.data());
+    ASSERT_EQ(view.code->EvaluateBatch(Quantity::kDrives,
+                                       {.count = count,
+                                        .coordinates = x_columns.data(),
+                                        .parameters = Parameters(view),
+                                        .modes = view.modes,
+                                        .values = q_columns.data()}),
+              Status::kOk);
+    for (std::size_t k = 0; k < count; ++k) {
+      const VectorXd local = LocalOf(view, poses_[k].z);
+      std::vector<double> single(static_cast<std::size_t>(shape.drives));
+      ASSERT_EQ(view.code->Evaluate(Quantity::kDrives,
+                                    {{local.data(), static_cast<std::size_t>(local.size())},
+                                     {},
+                                     Parameters(view),
+                                     view.modes},
+                                    {.values = single}),
+                Status::kOk);
+      for (std::size_t i = 0; i < single.size(); ++i) {
+        EXPECT_NEAR(q[i][k], single[i], 1e-13 * std::max(1.0, std::abs(single[i])))
+            << Where(poses_[k]);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped,
+                         MechanismLaws,
+                         testing::ValuesIn(tests::ShippedMachineFiles()),
+                         [](const auto& info) { return info.param; });
+
+TEST(ShippedMachines, UseEveryRegisteredMechanism) {
+  std::set<std::string> used;
+  for (const std::string& name : tests::ShippedMachineFiles()) {
+    const Machine machine = tests::LoadMachine(name);
+    for (const Machine::BlockView& view : machine.blocks()) used.insert(view.block->module);
+  }
+  for (const std::string& id : tests::ShippedRegistry().ModuleIds(plugin::ModuleKind::kMechanism)) {
+    EXPECT_TRUE(used.count(id) == 1)
+        << id << " has no machine in layouts/machines, so no law was tested on it";
+  }
+}
+
+}  // namespace
+}  // namespace kompono
