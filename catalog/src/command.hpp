@@ -2,20 +2,21 @@
 #ifndef KOMPONO_CATALOG_SRC_COMMAND_HPP_
 #define KOMPONO_CATALOG_SRC_COMMAND_HPP_
 
+#include <SQLiteCpp/Database.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string_view>
 
-#include <SQLiteCpp/Database.h>
 #include <sqlite3.h>
 
 #include "kompono/catalog/hash.hpp"
 
 namespace kompono::catalog {
 
-/// A prepared statement for bulk writing. Unlike SQLite::Statement it takes string views and copies nothing: what is
-/// bound must live until `Run`. Errors are SQLite::Exception.
+/// A prepared statement for bulk writing. Unlike SQLite::Statement it takes string views and copies
+/// nothing: what is bound must live until `Run`. Errors are SQLite::Exception.
 class Command {
  public:
   Command(SQLite::Database& db, std::string_view sql);
@@ -36,7 +37,9 @@ class Command {
   /// The same for a question that must have an answer: the first column of the first row.
   std::int64_t Ask();
 
-  [[nodiscard]] int ParameterCount() const { return sqlite3_bind_parameter_count(statement_.get()); }
+  [[nodiscard]] int ParameterCount() const {
+    return sqlite3_bind_parameter_count(statement_.get());
+  }
 
  private:
   void Check(int code);

@@ -54,6 +54,11 @@ Diagnostic FromSqlite(int code, std::string_view message, const std::string& fil
       return Complaint("E0510", file, fmt::format("reading or writing failed: {}", message));
     case SQLITE_CONSTRAINT:
       return Complaint("E0511", file, fmt::format("the catalog refuses the row: {}", message));
+    case SQLITE_AUTH:
+      return Complaint("E0508",
+                       file,
+                       "the catalog's views do what no view of a catalog does",
+                       "see what 'kompono catalog verify' says");
     case SQLITE_ERROR:
     case SQLITE_SCHEMA:
       return Complaint("E0508",

@@ -4,6 +4,7 @@
 #include "expression.hpp"
 #include "schema.hpp"
 #include <SQLiteCpp/Statement.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -45,43 +46,67 @@ constexpr std::array<Limit, 10> kLimits = {{{SQLITE_LIMIT_LENGTH, 100'000},
                                             {SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 500},
                                             {SQLITE_LIMIT_WORKER_THREADS, 0}}};
 
+void Restrict(SQLite::Database& db) {
+  for (const Limit& limit : kLimits) sqlite3_limit(db.getHandle(), limit.id, limit.value);
+}
+
 std::string_view OrEmpty(const char* text) {
   return text == nullptr ? std::string_view() : text;
 }
 
 }  // namespace
 
-Permissions::Permissions(SQLite::Database& db) {
-  sqlite3_set_authorizer(db.getHandle(), &Permissions::Callback, this);
+Permissions::Permissions(SQLite::Database& db) : shadow_(":memory:", SQLite::OPEN_READWRITE) {
+  sqlite3_set_authorizer(db.getHandle(), &Permissions::OnFile, this);
   for (const std::string_view view : kViews) {
     const SQLite::Statement all(db, "SELECT * FROM " + std::string(view));
     std::vector<std::string>& columns = views_[std::string(view)];
     for (int i = 0; i < all.getColumnCount(); ++i) columns.emplace_back(all.getColumnName(i));
+    shadow_.exec(fmt::format("CREATE TABLE {}({})", view, fmt::join(columns, ", ")));
   }
   learning_ = false;
+  Restrict(db);
+  Restrict(shadow_);
+  sqlite3_set_authorizer(shadow_.getHandle(), &Permissions::OnShadow, this);
 }
 
 std::vector<std::string> Permissions::Functions() {
   return {kFunctions.begin(), kFunctions.end()};
 }
 
-int Permissions::Callback(
+int Permissions::OnFile(
     void* self, int action, const char* a, const char* b, const char* database, const char* view) {
   static_cast<void>(database);
-  // An exception must not cross SQLite.
+  auto* permissions = static_cast<Permissions*>(self);
   try {
-    return static_cast<Permissions*>(self)->Judge(action, OrEmpty(a), OrEmpty(b), OrEmpty(view));
+    const bool may_read =
+        action == SQLITE_READ && permissions->MayReadInFile(OrEmpty(a), OrEmpty(b), OrEmpty(view));
+    return permissions->Judge(action, OrEmpty(a), OrEmpty(b), may_read);
+  } catch (...) {
+    return SQLITE_DENY;  // an exception must not cross SQLite
+  }
+}
+
+int Permissions::OnShadow(
+    void* self, int action, const char* a, const char* b, const char* database, const char* view) {
+  static_cast<void>(database);
+  static_cast<void>(view);
+  auto* permissions = static_cast<Permissions*>(self);
+  try {
+    const bool may_read =
+        action == SQLITE_READ && permissions->views_.contains(a == nullptr ? "" : a);
+    return permissions->Judge(action, OrEmpty(a), OrEmpty(b), may_read);
   } catch (...) {
     return SQLITE_DENY;
   }
 }
 
-int Permissions::Judge(int action, std::string_view a, std::string_view b, std::string_view view) {
+int Permissions::Judge(int action, std::string_view a, std::string_view b, bool may_read) {
   switch (action) {
     case SQLITE_SELECT:
       return SQLITE_OK;
     case SQLITE_READ:
-      return JudgeRead(a, b, view);
+      return may_read ? SQLITE_OK : Deny(Denial::Kind::kTable, a);
     case SQLITE_FUNCTION: {
       const bool known =
           std::any_of(kFunctions.begin(), kFunctions.end(), [b](std::string_view function) {
@@ -96,18 +121,19 @@ int Permissions::Judge(int action, std::string_view a, std::string_view b, std::
   }
 }
 
-int Permissions::JudgeRead(std::string_view table, std::string_view column, std::string_view view) {
+bool Permissions::MayReadInFile(std::string_view table,
+                                std::string_view column,
+                                std::string_view view) {
   const bool is_view = std::find(kViews.begin(), kViews.end(), table) != kViews.end();
-  if (is_view) return SQLITE_OK;
+  if (is_view) return true;
   if (learning_) {
-    // An empty column: the table is counted or joined without reading one.
     reads_.emplace(view, table, column);
-    reads_.emplace(view, table, "");
-    return SQLITE_OK;
+    tables_.emplace(table);
+    return true;
   }
-  const bool known =
-      reads_.contains(std::tuple(std::string(view), std::string(table), std::string(column)));
-  return known ? SQLITE_OK : Deny(Denial::Kind::kTable, table);
+  // No column: the rows are counted or joined; on whose behalf, only the shadow could tell.
+  if (column.empty()) return tables_.contains(table);
+  return reads_.contains(std::tuple(std::string(view), std::string(table), std::string(column)));
 }
 
 int Permissions::Deny(Denial::Kind kind, std::string_view name) {
@@ -141,7 +167,6 @@ Reader::Reader(const std::string& uri, std::string file, std::chrono::millisecon
   Configure(db_);
   db_.exec("PRAGMA query_only = ON");
   db_.exec("PRAGMA temp_store = MEMORY");
-  for (const Limit& limit : kLimits) sqlite3_limit(db_.getHandle(), limit.id, limit.value);
   permissions_ = std::make_unique<Permissions>(db_);
 }
 

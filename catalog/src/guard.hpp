@@ -22,9 +22,13 @@ struct sqlite3_stmt;
 
 namespace kompono::catalog {
 
-/// What a query may touch. The views of the file are read once, and exactly the columns they read
-/// are allowed later, each only on behalf of its view; besides that the views' own columns and a
-/// list of functions.
+/// What a query may touch, enforced twice.
+///
+/// First the text is compiled against a shadow: an empty database in memory whose tables are called
+/// and shaped like the views, so that no other name means anything. Only then it meets the file,
+/// where SQLite's authorizer lets through the columns the views themselves read, each only on
+/// behalf of its view. (The authorizer alone would not do: SQLite asks about a table that is only
+/// counted, without saying on whose behalf.) Both allow a list of functions, no more.
 class Permissions {
  public:
   /// Installs itself as the authorizer of `db`, which must not outlive it.
@@ -43,6 +47,8 @@ class Permissions {
   [[nodiscard]] const Denial& Denied() const { return denied_; }
   void Reset() { denied_ = {}; }
 
+  [[nodiscard]] SQLite::Database& Shadow() { return shadow_; }
+
   /// Columns of each view, in their order.
   [[nodiscard]] const std::map<std::string, std::vector<std::string>>& Views() const {
     return views_;
@@ -50,17 +56,20 @@ class Permissions {
   [[nodiscard]] static std::vector<std::string> Functions();
 
  private:
-  static int Callback(
+  static int OnFile(
       void* self, int action, const char* a, const char* b, const char* database, const char* view);
-  int Judge(int action, std::string_view a, std::string_view b, std::string_view view);
-  int JudgeRead(std::string_view table, std::string_view column, std::string_view view);
+  static int OnShadow(
+      void* self, int action, const char* a, const char* b, const char* database, const char* view);
+  int Judge(int action, std::string_view a, std::string_view b, bool may_read);
+  bool MayReadInFile(std::string_view table, std::string_view column, std::string_view view);
   int Deny(Denial::Kind kind, std::string_view name);
 
   bool learning_ = true;
-  std::set<std::tuple<std::string, std::string, std::string>, std::less<>>
-      reads_;  // view, table, column
+  std::set<std::tuple<std::string, std::string, std::string>> reads_;  // view, table, column
+  std::set<std::string, std::less<>> tables_;                          // those the views read
   std::map<std::string, std::vector<std::string>> views_;
   Denial denied_;
+  SQLite::Database shadow_;
 };
 
 /// Stops what runs on `db` when time or memory is used up; lives as long as the statement runs.

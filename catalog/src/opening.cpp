@@ -188,27 +188,16 @@ Parsed<Opened> OpenForWriting(const fs::path& path, std::chrono::milliseconds ti
   Configure(*opened.db);
   const int version = VersionOf(*opened.db);
   if (version > NewestVersion()) return TooNew(path, version);
-  opened.db->exec("PRAGMA journal_mode = WAL");
   if (version < NewestVersion()) {
     Parsed<Diagnostics> notes = Upgrade(*opened.db, path);
     if (!notes) return tl::make_unexpected(notes.error());
     opened.notes = *std::move(notes);
   }
+  opened.db->exec("PRAGMA journal_mode = WAL");
   return opened;
 }
 
 }  // namespace
-
-std::string UriOf(const fs::path& path, bool immutable) {
-  std::string uri = "file:";
-  const std::string name = path.is_absolute() ? path.string() : "./" + path.string();
-  for (const char c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '/' || c == '.' || c == '-' || c == '_';
-    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<std::uint8_t>(c));
-  }
-  return immutable ? uri + "?immutable=1" : uri;
-}
 
 Parsed<Opened> OpenCatalog(const fs::path& path, const OpenOptions& options) {
   return Guarded(path.string(), [&]() -> Parsed<Opened> {

@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
 
 #include "kompono/catalog/store.hpp"
 #include "kompono/diagnostics/diagnostic.hpp"
@@ -23,10 +22,6 @@ struct Opened {
 /// it.
 [[nodiscard]] Parsed<Opened> OpenCatalog(const std::filesystem::path& path,
                                          const OpenOptions& options);
-
-/// "file:..." for sqlite3_open_v2 with SQLITE_OPEN_URI; `immutable`: SQLite takes no locks and
-/// writes nothing beside.
-[[nodiscard]] std::string UriOf(const std::filesystem::path& path, bool immutable);
 
 }  // namespace kompono::catalog
 

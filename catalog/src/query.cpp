@@ -158,10 +158,6 @@ Parsed<std::unique_ptr<Prepared>> Compose(const QueryRequest& request, const Vie
     prepared->sort = *std::move(text);
     if (auto items = SplitSort(prepared->sort); keep(items)) sort = *std::move(items);
   }
-  for (const ListItem& item : sort) {
-    if (item.first == item.last)
-      found.push_back(Complaint("E0520", "sort", "there is a direction but nothing to sort by"));
-  }
   if (!found.empty()) return tl::make_unexpected(std::move(found));
 
   Composition& composition = prepared->composition;
@@ -265,32 +261,45 @@ Diagnostic FromError(const Composition& composition,
 
 using StatementPtr = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
 
+/// `sql` is the composition, with or without an EXPLAIN in front.
+Parsed<StatementPtr> PrepareOn(SQLite::Database& db,
+                               Permissions& permissions,
+                               const Composition& composition,
+                               const std::string& sql,
+                               const std::string& file) {
+  permissions.Reset();
+  sqlite3_stmt* raw = nullptr;
+  const int code =
+      sqlite3_prepare_v2(db.getHandle(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
+  if (code == SQLITE_OK) return StatementPtr(raw, &sqlite3_finalize);
+  if (permissions.Denied().kind != Permissions::Denial::Kind::kNone) {
+    return tl::make_unexpected(Diagnostics{FromDenial(permissions, composition)});
+  }
+  const std::string message = sqlite3_errmsg(db.getHandle());
+  switch (code & 0xFF) {
+    case SQLITE_ERROR: {
+      const int before = static_cast<int>(sql.size() - composition.Sql().size());
+      const int offset = sqlite3_error_offset(db.getHandle());
+      const int own = offset < 0 ? -1 : offset - before;
+      return tl::make_unexpected(
+          Diagnostics{FromError(composition, permissions.Views(), message, own)});
+    }
+    case SQLITE_TOOBIG:
+    case SQLITE_NOMEM:
+      return Refuse("E0527", "query", "the query is too large");
+    default:
+      return tl::make_unexpected(Diagnostics{FromSqlite(code, message, file)});
+  }
+}
+
 Parsed<StatementPtr> Prepare(SQLite::Database& db,
                              Permissions& permissions,
                              const Composition& composition,
                              const std::string& sql,
                              const std::string& file) {
-  permissions.Reset();
-  sqlite3_stmt* raw = nullptr;
-  const std::size_t shift = sql.size() - composition.Sql().size();  // of an EXPLAIN in front
-  const int code =
-      sqlite3_prepare_v2(db.getHandle(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
-  if (code == SQLITE_OK) return StatementPtr(raw, &sqlite3_finalize);
-  const int primary = code & 0xFF;
-  if (permissions.Denied().kind != Permissions::Denial::Kind::kNone) {
-    return tl::make_unexpected(Diagnostics{FromDenial(permissions, composition)});
-  }
-  const std::string message = sqlite3_errmsg(db.getHandle());
-  if (primary == SQLITE_ERROR) {
-    const int offset = sqlite3_error_offset(db.getHandle());
-    const int own = offset < 0 ? -1 : offset - static_cast<int>(shift);
-    return tl::make_unexpected(
-        Diagnostics{FromError(composition, permissions.Views(), message, own)});
-  }
-  if (primary == SQLITE_TOOBIG || primary == SQLITE_NOMEM) {
-    return Refuse("E0527", "query", "the query is too large", "");
-  }
-  return tl::make_unexpected(Diagnostics{FromSqlite(code, message, file)});
+  return PrepareOn(permissions.Shadow(), permissions, composition, sql, file)
+      .and_then(
+          [&](const StatementPtr&) { return PrepareOn(db, permissions, composition, sql, file); });
 }
 
 /// SQLite's texts are bytes; anything that is not UTF-8 (only a cast makes it) is shown as what it

@@ -191,11 +191,12 @@ Calibration CalibrationAt(SQLite::Statement& row, int first) {
           .report_json = row.getColumn(first + 7).getString()};
 }
 
-Parsed<std::int64_t> FindLayout(SQLite::Database& db, std::string_view key) {
+Parsed<std::int64_t> FindLayout(SQLite::Database& db,
+                                std::string_view key,
+                                const std::string& file) {
   std::vector<Candidate> found = ByName(db, std::string(key));
   if (found.empty()) found = ById(db, key);
   if (found.empty()) found = ByHash(db, key);
-  const std::string file = db.getFilename();
   if (found.empty()) {
     return Refuse("E0512",
                   file,

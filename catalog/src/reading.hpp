@@ -16,8 +16,11 @@
 
 namespace kompono::catalog {
 
-/// The layout a name, id or hash prefix stands for (E0512 unknown, E0513 ambiguous).
-[[nodiscard]] Parsed<std::int64_t> FindLayout(SQLite::Database& db, std::string_view key);
+/// The layout a name, id or hash prefix stands for; `file` is named in complaints (E0512 unknown,
+/// E0513 ambiguous).
+[[nodiscard]] Parsed<std::int64_t> FindLayout(SQLite::Database& db,
+                                              std::string_view key,
+                                              const std::string& file);
 
 [[nodiscard]] StoredLayout ReadLayout(SQLite::Database& db, std::int64_t id);
 [[nodiscard]] std::string ReadToml(SQLite::Database& db, std::int64_t id);

@@ -28,18 +28,23 @@ std::filesystem::path BackupName(const std::filesystem::path& path, int version)
 }
 
 /// Copies through SQLite, which includes what still lies in the write-ahead log, and gives the copy
-/// its name only when it is complete.
-std::filesystem::path CopyAside(SQLite::Database& db,
-                                const std::filesystem::path& path,
-                                int version) {
+/// its name only when it is complete. The caller holds the write lock, so that nothing changes
+/// meanwhile; the copy is read over a connection of its own because SQLite copies from none that is
+/// writing.
+std::filesystem::path CopyAside(const std::filesystem::path& path, int version) {
   const std::filesystem::path name = BackupName(path, version);
   std::filesystem::path part = name;
   part += ".part";
   std::filesystem::remove(part);
   {
-    SQLite::Database copy(part.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    SQLite::Backup backup(copy, db);
-    backup.executeStep();
+    SQLite::Database source(UriOf(path, false), SQLite::OPEN_READONLY | SQLite::OPEN_URI, 5000);
+    SQLite::Database copy(UriOf(part, false),
+                          SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_URI);
+    const int code = SQLite::Backup(copy, source).executeStep();
+    if (code != SQLITE_DONE)
+      throw SQLite::Exception("the copy before a migration cannot be made", code);
+    // The copy of a file with a log is one too; without it all of the copy is in the one file that
+    // is renamed.
     copy.exec("PRAGMA journal_mode = DELETE");
   }
   std::filesystem::rename(part, name);
@@ -78,6 +83,17 @@ int VersionOf(SQLite::Database& db) {
   return db.execAndGet("PRAGMA user_version").getInt();
 }
 
+std::string UriOf(const std::filesystem::path& path, bool immutable) {
+  std::string uri = "file:";
+  const std::string name = path.is_absolute() ? path.string() : "./" + path.string();
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '/' || c == '.' || c == '-' || c == '_';
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<std::uint8_t>(c));
+  }
+  return immutable ? uri + "?immutable=1" : uri;
+}
+
 std::string Now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
@@ -113,7 +129,7 @@ Parsed<Diagnostics> Upgrade(SQLite::Database& db, const std::filesystem::path& p
       SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
       // Read under the lock: another program may have migrated meanwhile.
       if (VersionOf(db) >= migration.version) continue;
-      if (copy.empty()) copy = CopyAside(db, path, VersionOf(db));
+      if (copy.empty()) copy = CopyAside(path, VersionOf(db));
       Apply(db, migration);
       transaction.commit();
     }

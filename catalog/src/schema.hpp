@@ -40,6 +40,10 @@ struct Migration {
 [[nodiscard]] int NewestVersion();
 [[nodiscard]] int VersionOf(SQLite::Database& db);
 
+/// "file:..." for sqlite3_open_v2 with SQLITE_OPEN_URI; `immutable`: SQLite takes no locks and
+/// writes nothing beside.
+[[nodiscard]] std::string UriOf(const std::filesystem::path& path, bool immutable);
+
 /// UTC, "2025-03-01T12:00:00Z".
 [[nodiscard]] std::string Now();
 

@@ -5,6 +5,7 @@
 #include "guard.hpp"
 #include "opening.hpp"
 #include "reading.hpp"
+#include "schema.hpp"
 #include "verifying.hpp"
 #include "writing.hpp"
 #include <SQLiteCpp/Transaction.h>
@@ -117,7 +118,7 @@ Parsed<StoredLayout> Store::Show(std::string_view key) const {
   return Guarded(impl_->Name(), [&]() -> Parsed<StoredLayout> {
     // One transaction, so that all tables are read as of one moment.
     SQLite::Transaction snapshot(*impl_->db);
-    return FindLayout(*impl_->db, key).map([&](std::int64_t id) {
+    return FindLayout(*impl_->db, key, impl_->Name()).map([&](std::int64_t id) {
       return ReadLayout(*impl_->db, id);
     });
   });
@@ -126,7 +127,7 @@ Parsed<StoredLayout> Store::Show(std::string_view key) const {
 Parsed<std::string> Store::Export(std::string_view key) const {
   return Guarded(impl_->Name(), [&]() -> Parsed<std::string> {
     SQLite::Transaction snapshot(*impl_->db);
-    return FindLayout(*impl_->db, key).map([&](std::int64_t id) {
+    return FindLayout(*impl_->db, key, impl_->Name()).map([&](std::int64_t id) {
       return ReadToml(*impl_->db, id);
     });
   });
@@ -146,8 +147,9 @@ Parsed<Statistics> Store::Stats() const {
 }
 
 Parsed<VerifyReport> Store::Verify() const {
-  return Guarded(impl_->Name(),
-                 [&]() -> Parsed<VerifyReport> { return VerifyCatalog(*impl_->db); });
+  return Guarded(impl_->Name(), [&]() -> Parsed<VerifyReport> {
+    return VerifyCatalog(*impl_->db, impl_->Name());
+  });
 }
 
 Parsed<Table> Store::Query(const QueryRequest& request) const {

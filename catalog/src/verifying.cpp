@@ -28,7 +28,7 @@ Schema SchemaOf(SQLite::Database& db) {
 
 class Verifier {
  public:
-  explicit Verifier(SQLite::Database& db) : db_(db), file_(db.getFilename()) {}
+  Verifier(SQLite::Database& db, std::string file) : db_(db), file_(std::move(file)) {}
 
   void Structure() {
     SQLite::Statement row(db_, "PRAGMA integrity_check(50)");
@@ -159,8 +159,8 @@ class Verifier {
 
 }  // namespace
 
-VerifyReport VerifyCatalog(SQLite::Database& db) {
-  Verifier verifier(db);
+VerifyReport VerifyCatalog(SQLite::Database& db, const std::string& file) {
+  Verifier verifier(db, file);
   verifier.Structure();
   verifier.References();
   verifier.Tables();

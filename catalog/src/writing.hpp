@@ -2,6 +2,7 @@
 #ifndef KOMPONO_CATALOG_SRC_WRITING_HPP_
 #define KOMPONO_CATALOG_SRC_WRITING_HPP_
 
+#include "command.hpp"
 #include <SQLiteCpp/Database.h>
 
 #include <cstdint>
@@ -11,7 +12,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "command.hpp"
 #include "kompono/catalog/store.hpp"
 
 namespace kompono::catalog {

@@ -158,7 +158,7 @@ TEST_F(OpeningTest, ReadsButDoesNotWriteInAReadOnlyFolder) {
   const std::string before = Bytes(File());
   std::filesystem::permissions(File(), perms::owner_read | perms::group_read | perms::others_read);
   std::filesystem::permissions(
-      folder_, perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
+      folder_, perms::all & ~(perms::owner_write | perms::group_write | perms::others_write));
   {
     const AsNobody nobody;
     EXPECT_EQ(CodeOf(Store::Open(File(), {.mode = OpenMode::kReadWrite})), "E0502");

@@ -191,7 +191,6 @@ TEST_F(QueryTest, PointsAtWrongSyntax) {
   EXPECT_THAT(Complaint({.where = "id", .columns = "name,,id"}),
               HasSubstr("columns:1:6: error: something is missing"));
   EXPECT_THAT(Complaint({.sort = "name,"}), HasSubstr("sort:1:6: error: something is missing"));
-  EXPECT_THAT(Complaint({.sort = "desc"}), HasSubstr("nothing to sort by"));
   EXPECT_THAT(Complaint({.where = "where id = 1"}),
               HasSubstr("'where' is put there by the program"));
 }
@@ -255,11 +254,9 @@ TEST_F(QueryTest, MainLookupsUseAnIndex) {
       {"rms_after_um < 100", "SEARCH l USING INDEX layout_by_rms_after"},
       {"rms_after_um between 10 and 100", "SEARCH l USING INDEX layout_by_rms_after"},
       {"id in (select layout_id from metrics where name = 'a' and value > 5)",
-       "USING INDEX metric_by_value"},
-      {"id in (select layout_id from modules where module = 'm')",
-       "USING INDEX layout_block_by_module"},
-      {"id in (select layout_id from capabilities where name = 'c')",
-       "USING INDEX capability_by_name"},
+       "INDEX metric_by_value"},
+      {"id in (select layout_id from modules where module = 'm')", "INDEX layout_block_by_module"},
+      {"id in (select layout_id from capabilities where name = 'c')", "INDEX capability_by_name"},
       {"(select max(value) from parameters where layout_id = id and name = 'p') > 1",
        "SEARCH r USING PRIMARY KEY"},
   };

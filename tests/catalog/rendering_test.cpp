@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -41,7 +42,7 @@ TEST(RenderText, LetsNothingReachTheTerminalThatCouldSteerIt) {
                     .rows = {{std::string("\x1b]0;x\x07 \x7f \xc2\x9b"
                                           "31m é")}}};
   EXPECT_EQ(RenderText(table),
-            "\\x1b[2J\n------------------------------\n\\x1b]0;x\\x07 \\x7f \\x9b31m é\n");
+            "\\x1b[2J\n---------------------------\n\\x1b]0;x\\x07 \\x7f \\x9b31m é\n");
 }
 
 TEST(RenderCsv, FollowsRfc4180) {
@@ -101,7 +102,7 @@ TEST(RenderCsv, NumbersReadBackExactly) {
   for (const double value :
        {0.1, 1.0 / 3.0, 5e-324, 1.7976931348623157e308, -0.0, 123456789.123456789}) {
     const auto read = ReadCsv(RenderCsv({.columns = {{.name = "x"}}, .rows = {{value}}}));
-    EXPECT_EQ(std::stod(read[1][0]), value);
+    EXPECT_EQ(std::strtod(read[1][0].c_str(), nullptr), value);
   }
 }
 
