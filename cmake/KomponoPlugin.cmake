@@ -9,7 +9,12 @@ function(kompono_plugin name)
   set(folder "${CMAKE_BINARY_DIR}/lib/kompono/plugins/${name}")
   add_library(kompono_plugin_${name} MODULE ${PLUGIN_SOURCES})
   target_link_libraries(kompono_plugin_${name} PRIVATE kompono::sdk)
-  target_link_options(kompono_plugin_${name} PRIVATE -Wl,-z,defs)
+  # The manifest is the only symbol shown: templates of the standard library (simd functions) have default visibility
+  # whatever the compiler is told, and unique symbols among them would keep the library from being unmapped.
+  set(shown "${CMAKE_CURRENT_BINARY_DIR}/${name}.map")
+  file(CONFIGURE OUTPUT "${shown}" CONTENT "{ global: kompono_plugin; local: *; };\n")
+  target_link_options(kompono_plugin_${name} PRIVATE -Wl,-z,defs "LINKER:--version-script=${shown}")
+  set_target_properties(kompono_plugin_${name} PROPERTIES LINK_DEPENDS "${shown}")
   set_target_properties(kompono_plugin_${name} PROPERTIES
     OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY "${folder}"
     CXX_STANDARD 20 CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)

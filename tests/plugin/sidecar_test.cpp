@@ -472,6 +472,26 @@ TEST(Sidecar, EverySidecarOfThisTreeIsGood) {
   EXPECT_GE(read, 6);
 }
 
+TEST(Sidecar, GuideQuotesWhatIsReallySaid) {
+  std::ifstream file(KOMPONO_SOURCE_DIR "/docs/writing-a-plugin.md");
+  const std::string guide{std::istreambuf_iterator<char>(file), {}};
+  const std::string fence = "```toml plugin.toml\n";
+  const std::size_t begin = guide.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t text_begin = begin + fence.size();
+  std::string text = guide.substr(text_begin, guide.find("```", text_begin) - text_begin);
+  EXPECT_EQ(Complaints(text), "no complaint");
+  const std::string right = "letters = \"X\"";
+  text.replace(text.find(right), right.size(), "letter = \"X\"");
+  const Parsed<Sidecar> sidecar = ParseSidecar(text, "plugin.toml");
+  ASSERT_FALSE(sidecar);
+  const auto unknown = std::find_if(sidecar.error().begin(),
+                                    sidecar.error().end(),
+                                    [](const Diagnostic& d) { return d.code == "E0221"; });
+  ASSERT_NE(unknown, sidecar.error().end());
+  EXPECT_THAT(guide, testing::HasSubstr(Render(*unknown, {})));
+}
+
 /// Damages the good sidecar in many ways; whatever comes out is a value or complaints with a place
 /// inside the text, never a crash.
 TEST(Sidecar, DamagedTextNeverCrashesTheReader) {
