@@ -217,13 +217,13 @@ Index BuildSum(Graph& graph, std::vector<Term> terms, double constant) {
   });
   if (terms.empty()) return graph.Constant(constant);
   Index sum = -1;
-  // "y - x" rather than "-x + y": it saves the change of sign.
+  // "y - x" rather than "-x + y", "-1 - x" rather than "-x - 1": it saves the change of sign.
   if (terms.front().coefficient == -1.0) {
     const auto positive = std::find_if(
         terms.begin(), terms.end(), [](const Term& term) { return term.coefficient > 0.0; });
     if (positive != terms.end()) {
       std::rotate(terms.begin(), positive, positive + 1);
-    } else if (constant > 0.0) {
+    } else if (constant != 0.0) {
       sum = graph.Constant(constant);
       constant = 0.0;
     }

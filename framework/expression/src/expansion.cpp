@@ -150,6 +150,11 @@ Poly Expansion::Sum(Poly a, Poly b, double sign_b) {
 }
 
 Poly Expansion::Product(const Poly& a, const Poly& b) {
+  // Nothing times what may be undefined is not nothing.
+  if (a.empty() != b.empty()) {
+    const Poly zero{{Powers{}, {0.0, 0.0}}};
+    return a.empty() ? Product(zero, b) : Product(a, zero);
+  }
   const bool too_long = a.size() > 1 && b.size() > 1 && a.size() * b.size() > options_.most_terms;
   if (too_long) {
     const Index first = Compose(a);

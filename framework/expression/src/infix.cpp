@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <compare>
+#include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -222,53 +225,80 @@ class InfixWriter {
   }
 
   // --- products ---
+  struct Place {
+    Index node;
+    bool below;
+    auto operator<=>(const Place&) const = default;
+  };
+
+  /// What a product's part consists of, if it is written as part of the product.
+  enum class Kind { kFactor, kProduct, kFraction, kMinus, kNumber };
+  [[nodiscard]] Kind KindOf(Place place, Index root) const {
+    if (place.node != root && IsNamed(place.node)) return Kind::kFactor;
+    switch (graph_.node(place.node).operation) {
+      case KOMPONO_MULTIPLY:
+        return Kind::kProduct;
+      case KOMPONO_DIVIDE:
+        return place.below ? Kind::kFactor : Kind::kFraction;
+      case KOMPONO_NEGATE:
+        return Kind::kMinus;
+      case KOMPONO_CONSTANT:
+        return place.below ? Kind::kFactor : Kind::kNumber;
+      default:
+        return Kind::kFactor;
+    }
+  }
+
+  /// Each part is visited once, however often it is contained: first from users to operands for the
+  /// powers, then from left to right for the order.
   [[nodiscard]] ProductView View(Index root) const {
     ProductView view;
-    std::set<Index> opened;
-    struct Waiting {
-      Index node;
-      int64_t power;
-      bool below;
-    };
-    std::vector<Waiting> waiting{{root, 1, false}};
+    std::map<Place, int64_t, std::greater<>> waiting{{{root, false}, 1}};
+    std::map<Place, int64_t> powers;
     while (!waiting.empty()) {
-      auto [i, power, below] = waiting.back();
-      waiting.pop_back();
-      const Node& node = graph_.node(i);
-      const bool is_whole = i == root || !IsNamed(i);
-      // A product met a second time stays closed: opened again and again it could become endless.
-      const bool may_open =
-          is_whole && power < (int64_t{1} << 40) &&
-          (node.operation == KOMPONO_MULTIPLY || (node.operation == KOMPONO_DIVIDE && !below)) &&
-          opened.insert(i).second;
-      if (may_open && node.operation == KOMPONO_MULTIPLY && node.operand[0] == node.operand[1]) {
-        waiting.push_back({node.operand[0], 2 * power, below});
-      } else if (may_open) {
-        waiting.push_back({node.operand[1], power, below || node.operation == KOMPONO_DIVIDE});
-        waiting.push_back({node.operand[0], power, below});
-      } else if (node.operation == KOMPONO_NEGATE && is_whole) {
-        if (power % 2 != 0) view.coefficient = -view.coefficient;
-        waiting.push_back({node.operand[0], power, below});
-      } else if (node.operation == KOMPONO_CONSTANT && !below) {
-        view.coefficient *= std::pow(node.value, static_cast<double>(power));
-      } else {
-        AddFactor(i, power, below ? &view.below : &view.above);
+      const auto [place, power] = *waiting.begin();
+      waiting.erase(waiting.begin());
+      const Node& node = graph_.node(place.node);
+      switch (KindOf(place, root)) {
+        case Kind::kProduct:
+        case Kind::kFraction:
+          waiting[{node.operand[0], place.below}] += power;
+          waiting[{node.operand[1], place.below || node.operation == KOMPONO_DIVIDE}] += power;
+          break;
+        case Kind::kMinus:
+          if (power % 2 != 0) view.coefficient = -view.coefficient;
+          waiting[{node.operand[0], place.below}] += power;
+          break;
+        case Kind::kNumber:
+          view.coefficient *= std::pow(node.value, static_cast<double>(power));
+          break;
+        case Kind::kFactor:
+          powers[place] = power;
+          break;
       }
     }
+    OrderFactors(root, powers, &view);
     return view;
   }
 
-  static void AddFactor(Index base, int64_t power, std::vector<Power>* factors) {
-    // Equal factors stand side by side in ordered products; looking at the last few keeps long ones
-    // fast.
-    const std::size_t begin = factors->size() > 16 ? factors->size() - 16 : 0;
-    for (std::size_t k = begin; k < factors->size(); ++k) {
-      if ((*factors)[k].base == base) {
-        (*factors)[k].power += power;
-        return;
+  void OrderFactors(Index root, const std::map<Place, int64_t>& powers, ProductView* view) const {
+    std::set<Place> seen;
+    std::vector<Place> waiting{{root, false}};
+    while (!waiting.empty()) {
+      const Place place = waiting.back();
+      waiting.pop_back();
+      if (!seen.insert(place).second) continue;
+      const Node& node = graph_.node(place.node);
+      const Kind kind = KindOf(place, root);
+      if (kind == Kind::kFactor) {
+        (place.below ? view->below : view->above).push_back({place.node, powers.at(place)});
+      } else if (kind == Kind::kMinus) {
+        waiting.push_back({node.operand[0], place.below});
+      } else if (kind != Kind::kNumber) {
+        waiting.push_back({node.operand[1], place.below || kind == Kind::kFraction});
+        waiting.push_back({node.operand[0], place.below});
       }
     }
-    factors->push_back({base, power});
   }
 
   void PlanProduct(const Item& item) {

@@ -272,7 +272,8 @@ class SimplifyPass {
         return Scale(result_, size, RebuildAbs(term.rest));
       case KOMPONO_SQRT: {
         const double root = std::sqrt(size);
-        if (term.coefficient > 0.0 && root * root == size && std::isnormal(root)) {
+        const bool is_square = std::fma(root, root, -size) == 0.0;  // exactly
+        if (term.coefficient > 0.0 && is_square && std::isnormal(root)) {
           return Scale(result_, root, result_.Raw(operation, term.rest));
         }
         return result_.Raw(operation, a);
