@@ -165,7 +165,7 @@ class Reader {
     }
     // An open bracket ends before the base at the latest, so that the rest is judged as it was
     // meant.
-    const auto ends = [this, closed](char32_t code) {
+    const auto ends = [closed](char32_t code) {
       return code == 0 || code == U')' || (!closed && (code == U'O' || code == U'|'));
     };
     std::vector<Nodes> branches(1);
