@@ -98,6 +98,7 @@ TEST(Iso230, IsReadWithTheSpindleAsAPlainAxis) {
 TEST(Iso230, TellsTheSpindleFromARotaryTable) {
   EXPECT_EQ(Read("[w C' B' X' b Y Z (C) t]").canonical, "part C B X O Y Z C2 tool");
   EXPECT_EQ(Read("[w C2' C' b Z (C) t]").canonical, "part C2 C O Z C3 tool");
+  EXPECT_EQ(Read("[w b (C) (C) t]").canonical, "part O C C2 tool");
 }
 
 TEST(Iso230, IsTurnedRoundWhenWrittenFromTheTool) {
@@ -105,6 +106,16 @@ TEST(Iso230, IsTurnedRoundWhenWrittenFromTheTool) {
   EXPECT_EQ(Read("[t Z b X']").canonical, "part X O Z tool");
   EXPECT_EQ(Read("[Z b X' w]").canonical, "part X O Z tool");
   EXPECT_EQ(Read("[w (C') b Z X t]").canonical, "part C O Z X tool");
+}
+
+TEST(Index, EndsWhereTheNextMotionBegins) {
+  const Reading reading = Read("part_xyw O C_vz P_zu");
+  EXPECT_EQ(reading.canonical, "part_xy w O C_v z u P_z");
+  EXPECT_THAT(reading.notes,
+              ElementsAre("N0109@8+1 index '_xy' ends before 'w', read as a setting motion",
+                          "N0109@15+1 index '_v' ends before 'z', read as a setting motion",
+                          "N0109@20+1 index '_z' ends before 'u', read as a setting motion",
+                          "N0104@17+3 'P_z' moved behind 'u': a process is last on its side"));
 }
 
 TEST(OurNotation, GivesNoNotes) {

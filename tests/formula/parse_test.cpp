@@ -151,6 +151,17 @@ TEST(ParseFormula, BlamesAnOpenBracketOnce) {
   EXPECT_THAT(ErrorCodes("((XY):a + (YZ):b O Z"), ElementsAre("E0110"));
 }
 
+TEST(ParseFormula, ReadsOnBehindAZeroByte) {
+  EXPECT_THAT(ErrorCodes(std::string_view("O (X\0 + Y)", 10)), ElementsAre("E0129"));
+}
+
+TEST(ParseFormula, TellsAMisspeltWordFromTheMotionBeforeIt) {
+  const auto formula = ParseFormula("XTOOL O");
+  ASSERT_FALSE(formula);
+  ASSERT_EQ(formula.error().size(), 1U);
+  EXPECT_EQ(formula.error().front().message, "unknown word 'TOOL'");
+}
+
 TEST(ParseFormula, KnowsWhereABlockNameWentTooFar) {
   const auto formula = ParseFormula("(XY):driveO Z");
   ASSERT_FALSE(formula);
