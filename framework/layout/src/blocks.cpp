@@ -32,11 +32,11 @@ std::string KnownDrives(const plugin::ModuleDescription& module, std::string_vie
 }  // namespace
 
 void LayoutReader::ReadBlocks() {
-  const toml::table* blocks = TableAt(root_, "block");
-  if (blocks == nullptr) return;
-  for (const auto& [name, node] : *blocks) {
-    if (const toml::table* table = node.as_table())
-      drafts_.push_back(ReadBlock(name.str(), *table));
+  if (const toml::table* blocks = TableAt(root_, "block")) {
+    for (const auto& [name, node] : *blocks) {
+      if (const toml::table* table = node.as_table())
+        drafts_.push_back(ReadBlock(name.str(), *table));
+    }
   }
   ConnectBlocks();
 }
@@ -49,7 +49,8 @@ const plugin::ModuleDescription* LayoutReader::ReadModule(const toml::table& tab
   const plugin::ModuleDescription* module = registry_.Find(*id);
   if (module == nullptr) {
     const Diagnostic unknown = registry_.UnknownModule(*id);
-    complaints_.Error(codes::kUnknownModule, place, unknown.message, unknown.help);
+    complaints_.Error(
+        codes::kUnknownModule, place, unknown.message, ForeignLetters(*id, unknown.help));
     return nullptr;
   }
   if (module->kind == kind) return module;
@@ -57,7 +58,7 @@ const plugin::ModuleDescription* LayoutReader::ReadModule(const toml::table& tab
       codes::kWrongModuleKind,
       place,
       fmt::format("'{}' is a {}; a {} is needed here", *id, KindName(module->kind), KindName(kind)),
-      DidYouMean(*id, registry_.ModuleIds(kind)));
+      fmt::format("'kompono plugins' lists every {}", KindName(kind)));
   return nullptr;
 }
 
@@ -67,7 +68,10 @@ BlockDraft LayoutReader::ReadBlock(std::string_view name, const toml::table& tab
   draft.block.name = std::string(name);
   draft.block.mount = ReadPlacement(TableAt(table, "mount"));
   draft.module = ReadModule(table, plugin::ModuleKind::kMechanism);
-  if (draft.module == nullptr) return draft;
+  if (draft.module == nullptr) {
+    names_known_ = false;
+    return draft;
+  }
   draft.block.module = draft.module->id;
   if (auto parameters = ReadParameters(table, *draft.module, units_, complaints_))
     draft.block.parameters = std::move(*parameters);
@@ -130,7 +134,7 @@ void LayoutReader::ConnectBlocks() {
     if (group != nullptr && group->block.empty()) ConnectUnnamed(*group);
   });
   for (const BlockDraft& draft : drafts_) {
-    if (draft.claimed) continue;
+    if (draft.claimed || draft.wanted) continue;
     complaints_.Error(codes::kUnnamedBlock,
                       complaints_.Span(*draft.table),
                       fmt::format("the formula does not use the block '{}'", draft.block.name),
@@ -148,6 +152,7 @@ void LayoutReader::ConnectNamed(const std::string& block_name,
     if (draft.module != nullptr) Fit(draft, axes);
     return;
   }
+  names_known_ = false;
   std::vector<std::string> names;
   for (const BlockDraft& draft : drafts_) names.push_back(draft.block.name);
   const std::string near = Nearest(block_name, names);
@@ -171,17 +176,21 @@ void LayoutReader::ConnectUnnamed(formula::Group& group) {
     draft.claimed = true;
     group.block = draft.block.name;
     complaints_.Note(codes::kBlockFound,
-                     formula_place_->Whole(),
+                     formula_place_->OfText(wanted),
                      fmt::format("{} is realised by the block '{}'", wanted, draft.block.name),
                      fmt::format("write {}:{}", wanted, draft.block.name));
     Fit(draft, group.axes);
     return;
   }
   std::vector<std::string> names;
-  for (const BlockDraft* draft : fitting) names.push_back(draft->block.name);
+  for (BlockDraft* draft : fitting) {
+    names.push_back(draft->block.name);
+    draft->wanted = true;
+  }
+  names_known_ = false;
   complaints_.Error(
       codes::kAmbiguousGroup,
-      formula_place_->Whole(),
+      formula_place_->OfText(wanted),
       fitting.empty()
           ? fmt::format("no free block of the file realises {}", wanted)
           : fmt::format("{} may be realised by each of: {}", wanted, fmt::join(names, ", ")),
@@ -296,7 +305,9 @@ void LayoutReader::ReadCoordinates(BlockDraft& draft) {
           codes::kHomeOutside,
           complaints_.Span(node),
           fmt::format("home of '{}.{}' lies outside its range", block.name, letter.str()),
-          fmt::format("its range is [{}, {}]", *lower / unit_of(*local), *upper / unit_of(*local)));
+          fmt::format("its range is [{:.12g}, {:.12g}]",
+                      *lower / unit_of(*local),
+                      *upper / unit_of(*local)));
     }
   }
 }

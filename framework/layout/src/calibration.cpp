@@ -13,8 +13,7 @@ namespace kompono::layout {
 
 void LayoutReader::ReadCalibration() {
   const toml::table* table = TableAt(root_, "calibration");
-  // Which numbers there are is only known of a layout that is good so far.
-  if (table == nullptr || complaints_.HasErrors()) return;
+  if (table == nullptr || !formula_good_ || !names_known_) return;
   numbers_ = NumbersOf(layout_, registry_);
   ReadPatterns(*table, "free", layout_.calibration.free);
   ReadPatterns(*table, "lock", layout_.calibration.lock);

@@ -28,6 +28,13 @@ void Complaints::Say(Severity severity,
                    std::move(help)});
 }
 
+std::string ForeignLetters(std::string_view word, std::string otherwise) {
+  const bool foreign = std::any_of(
+      word.begin(), word.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80U; });
+  return foreign ? "some of its letters are not Latin, even if they look it; type it anew"
+                 : std::move(otherwise);
+}
+
 std::string_view TypeName(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:

@@ -50,6 +50,10 @@ class Complaints {
   Diagnostics list_;
 };
 
+/// What to say of a word with letters that are not Latin, such as the Cyrillic ones that look it;
+/// else `otherwise`.
+[[nodiscard]] std::string ForeignLetters(std::string_view word, std::string otherwise);
+
 /// "a string", "a list", …: what stands in the file, for people.
 [[nodiscard]] std::string_view TypeName(const toml::node& node);
 

@@ -107,12 +107,15 @@ End LayoutReader::ReadEnd(const std::string& name, const toml::table* table) {
       complaints_.Error(codes::kNeedsModule,
                         complaints_.Span(table->find(key)->first.source()),
                         fmt::format("'{}' means nothing without a 'module'", key),
-                        DidYouMean("", registry_.ModuleIds(plugin::ModuleKind::kUnit)));
+                        "add the unit, as in module = \"tool\"; 'kompono plugins' lists them");
     }
     return end;
   }
   const plugin::ModuleDescription* module = ReadModule(*table, plugin::ModuleKind::kUnit);
-  if (module == nullptr) return end;
+  if (module == nullptr) {
+    names_known_ = false;
+    return end;
+  }
   end.module = module->id;
   if (auto parameters = ReadParameters(*table, *module, units_, complaints_))
     end.parameters = std::move(*parameters);

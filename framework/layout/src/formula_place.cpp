@@ -90,16 +90,17 @@ FormulaPlace::FormulaPlace(std::string_view text,
   RawString raw(text, begin);
   for (std::size_t i = 0; i < value.size();) {
     const std::size_t bytes = BytesOf(value, i);
-    offset_.insert(offset_.end(), bytes, raw.Next());
+    begin_.insert(begin_.end(), bytes, raw.Next());
+    end_.insert(end_.end(), bytes, raw.at());
     i += bytes;
   }
-  offset_.push_back(raw.at());
+  begin_.push_back(raw.at());
 }
 
 SourceSpan FormulaPlace::Between(std::size_t begin, std::size_t end) const {
-  begin = std::min(begin, offset_.size() - 1);
-  end = std::clamp(end, begin, offset_.size() - 1);
-  return SpanOf(text_, offset_[begin], offset_[end]);
+  begin = std::min(begin, value_.size());
+  end = std::clamp(end, begin, value_.size());
+  return SpanOf(text_, begin_[begin], end > begin ? end_[end - 1] : begin_[begin]);
 }
 
 SourceSpan FormulaPlace::InFile(const SourceSpan& span) const {
@@ -107,6 +108,12 @@ SourceSpan FormulaPlace::InFile(const SourceSpan& span) const {
   const std::size_t begin = OffsetAt(value_, span.line, span.column);
   const std::size_t end = OffsetAt(value_, span.line, span.column + std::max(1, span.length));
   return Between(begin, end);
+}
+
+SourceSpan FormulaPlace::OfText(std::string_view text) const {
+  const std::size_t at = value_.find(text);
+  if (at == std::string::npos || value_.find(text, at + 1) != std::string::npos) return whole_;
+  return Between(at, at + text.size());
 }
 
 SourceSpan FormulaPlace::OfBlock(std::string_view name) const {

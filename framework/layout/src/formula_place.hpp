@@ -24,6 +24,8 @@ class FormulaPlace {
   [[nodiscard]] SourceSpan InFile(const SourceSpan& span) const;
   /// The place of ":name", or of the whole string if it is not written like that.
   [[nodiscard]] SourceSpan OfBlock(std::string_view name) const;
+  /// The place of some text that stands there once, or of the whole string.
+  [[nodiscard]] SourceSpan OfText(std::string_view text) const;
   /// The place of the whole string.
   [[nodiscard]] SourceSpan Whole() const { return whole_; }
 
@@ -33,8 +35,10 @@ class FormulaPlace {
   std::string_view text_;
   std::string value_;
   SourceSpan whole_;
-  /// Byte offset in the file of every byte of the value, and of its end.
-  std::vector<std::size_t> offset_;
+  /// Where every byte of the value, and its end, begins in the file.
+  std::vector<std::size_t> begin_;
+  /// Where the file's text for every byte of the value ends.
+  std::vector<std::size_t> end_;
 };
 
 /// Byte offset of a 1-based line and column (code points) of `text`.

@@ -77,6 +77,14 @@ class KindFit {
   std::vector<std::size_t> mine_, theirs_;
 };
 
+/// Few angles first, then few letters that count backwards, then small angles.
+int Effort(const std::array<int, 3>& turn, const LetterFit& fit) {
+  int effort = 0;
+  for (const int angle : turn) effort += (angle != 0 ? 100000 : 0) + std::abs(angle);
+  for (const Block::LetterMap& letter : fit.letters) effort += letter.sign < 0 ? 1000 : 0;
+  return effort;
+}
+
 }  // namespace
 
 LetterFit FitLetters(std::string_view local,
@@ -117,10 +125,7 @@ std::string LettersUnderMount(std::string_view local, const Placement& mount) {
 std::optional<std::array<int, 3>> RotationThatFits(std::string_view local,
                                                    const std::vector<formula::Axis>& wanted) {
   std::optional<std::array<int, 3>> best;
-  const auto effort = [](const std::array<int, 3>& r) {
-    return 1000 * ((r[0] != 0) + (r[1] != 0) + (r[2] != 0)) + std::abs(r[0]) + std::abs(r[1]) +
-           std::abs(r[2]);
-  };
+  int least = 0;
   constexpr std::array<int, 4> kTurns{0, 90, -90, 180};
   for (const int a : kTurns) {
     for (const int b : kTurns) {
@@ -128,8 +133,13 @@ std::optional<std::array<int, 3>> RotationThatFits(std::string_view local,
         const std::array<int, 3> turn{a, b, c};
         Placement mount;
         for (std::size_t i = 0; i < 3; ++i) mount.rotation_rad[i] = turn[i] * kRadPerDeg;
-        if (FitLetters(local, mount, wanted).kind != LetterFit::Kind::kFits) continue;
-        if (!best || effort(turn) < effort(*best)) best = turn;
+        const LetterFit fit = FitLetters(local, mount, wanted);
+        if (fit.kind != LetterFit::Kind::kFits) continue;
+        const int effort = Effort(turn, fit);
+        if (!best || effort < least) {
+          best = turn;
+          least = effort;
+        }
       }
     }
   }

@@ -39,7 +39,7 @@ struct LetterFit {
 [[nodiscard]] std::string LettersUnderMount(std::string_view local, const Placement& mount);
 
 /// A rotation by multiples of 90 degrees under which the letters would fit: the one with the fewest
-/// angles.
+/// angles, and among those the one with the fewest letters that count backwards.
 [[nodiscard]] std::optional<std::array<int, 3>> RotationThatFits(
     std::string_view local, const std::vector<formula::Axis>& wanted);
 

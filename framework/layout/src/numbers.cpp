@@ -85,12 +85,12 @@ class Collector {
                        .points = parameter.shape == plugin::ParameterShape::kPoints,
                        .numbers = {}};
       for (const std::string& name : parameter.NumberNames()) {
-        if (at >= values.size()) return;
         place.numbers.push_back({.name = owner + "." + name,
                                  .other_names = {},
-                                 .value = values[at++],
+                                 .value = at < values.size() ? values[at] : 0.0,
                                  .angle = parameter.angle(),
                                  .pure = parameter.unit == "1"});
+        ++at;
       }
       if (!parameter.fixed) places_.push_back(std::move(place));
     }

@@ -153,7 +153,11 @@ class ParameterReader {
     WrongCount(parameter, *list, static_cast<std::size_t>(parameter.count), "points");
     for (const toml::node& element : *list) {
       if (!element.is_array()) {
-        WrongType(parameter, element);
+        complaints_.Error(codes::kWrongType,
+                          complaints_.Span(element),
+                          fmt::format("each point of '{}' must be a list [x, y, z], not {}",
+                                      parameter.name,
+                                      TypeName(element)));
         return;
       }
       TakeList(parameter, element, 3, "numbers for each point", numbers);

@@ -47,10 +47,11 @@ Parsed<Layout> LayoutReader::Read(Diagnostics* notes) {
   ReadUnits();
   ReadFormula();
   ReadBlocks();
-  for (BlockDraft& draft : drafts_) layout_.blocks.push_back(std::move(draft.block));
+  for (const BlockDraft& draft : drafts_) layout_.blocks.push_back(draft.block);
   ReadAxes();
   ReadOpenBase();
   ReadEnds();
+  JudgeBlockNames();
   ReadCalibration();
   if (complaints_.HasErrors()) return tl::unexpected(complaints_.Take());
   if (notes != nullptr) {
@@ -64,8 +65,18 @@ bool LayoutReader::ParseToml() {
     root_ = toml::parse(text_, complaints_.file());
     return true;
   } catch (const toml::parse_error& error) {
-    complaints_.Error(
-        codes::kNotToml, complaints_.Span(error.source()), std::string(error.description()));
+    std::string_view what = error.description();
+    constexpr std::string_view kPrefix = "Error ";
+    if (what.substr(0, kPrefix.size()) == kPrefix) what.remove_prefix(kPrefix.size());
+    const auto says = [what](std::string_view words) {
+      return what.find(words) != std::string_view::npos;
+    };
+    complaints_.Error(codes::kNotToml,
+                      complaints_.Span(error.source()),
+                      fmt::format("this is not TOML: {}", what),
+                      says("redefine")             ? "a key or table may stand only once"
+                      : says("control characters") ? "a string in quotes ends on its own line"
+                                                   : "");
     return false;
   }
 }
@@ -155,10 +166,11 @@ Axis LayoutReader::ReadAxis(const formula::Axis& item, const toml::table* table)
   const auto home = NumberAt(*table, "home");
   axis.home = home ? *home * unit : std::clamp(0.0, lower, upper);
   if (home && (axis.home < lower || axis.home > upper)) {
-    complaints_.Warning(codes::kHomeOutside,
-                        complaints_.Span(*table->get("home")),
-                        fmt::format("home of '{}' lies outside its range", axis.name),
-                        fmt::format("the axis can go from {} to {}", lower / unit, upper / unit));
+    complaints_.Warning(
+        codes::kHomeOutside,
+        complaints_.Span(*table->get("home")),
+        fmt::format("home of '{}' lies outside its range", axis.name),
+        fmt::format("the axis can go from {:.12g} to {:.12g}", lower / unit, upper / unit));
   }
   return axis;
 }
@@ -187,6 +199,23 @@ void LayoutReader::JudgeAxisTables(const std::vector<formula::Axis>& plain) {
                                        "those of its coordinates in its 'range'",
                                        block->name)
                          : DidYouMean(key.str(), names));
+  }
+}
+
+/// Numbers are called "Z.zero" and "tool.length": one name must not mean two things.
+void LayoutReader::JudgeBlockNames() {
+  for (const BlockDraft& draft : drafts_) {
+    const std::string& name = draft.block.name;
+    const End* end = layout_.FindEnd(name);
+    if (layout_.FindAxis(name) == nullptr && end == nullptr && name != "open_base") continue;
+    complaints_.Error(codes::kNameTaken,
+                      complaints_.Span(*draft.table),
+                      fmt::format("the block's name '{}' is that of {}",
+                                  name,
+                                  end != nullptr        ? "an end of the machine"
+                                  : name == "open_base" ? "the open base"
+                                                        : "an axis"),
+                      "give the block another name, here and in the formula");
   }
 }
 

@@ -28,6 +28,7 @@ struct BlockDraft {
   const toml::table* table = nullptr;
   const plugin::ModuleDescription* module = nullptr;  ///< null: it was refused
   bool claimed = false;                               ///< a group or axis of the formula uses it
+  bool wanted = false;                                ///< one of several that might realise a group
 };
 
 /// Reads one layout; first every table by itself, then one against the other. Each step goes on
@@ -45,6 +46,7 @@ class LayoutReader {
   void ReadFormula();
   void ReadAxes();
   [[nodiscard]] Axis ReadAxis(const formula::Axis& item, const toml::table* table);
+  void JudgeBlockNames();
   void JudgeAxisTables(const std::vector<formula::Axis>& plain);
   void ReadOpenBase();
   [[nodiscard]] Placement ReadPlacement(const toml::table* table) const;
@@ -92,6 +94,7 @@ class LayoutReader {
   Units units_;
   Layout layout_;
   bool formula_good_ = false;
+  bool names_known_ = true;  ///< all blocks and modules were found, so that the numbers have names
   std::unique_ptr<FormulaPlace> formula_place_;  ///< null: there is no formula string
   std::vector<BlockDraft> drafts_;
   std::vector<Number> numbers_;  ///< of a layout that is good so far

@@ -67,7 +67,7 @@ void Judge::Table(const toml::table& table, const TableRule& rule, const std::st
       complaints_.Error(codes::kUnknownKey,
                         complaints_.Span(key.source()),
                         fmt::format("unknown key '{}'{}", key.str(), InTable(where)),
-                        DidYouMean(key.str(), rule.KeyNames(), 20));
+                        ForeignLetters(key.str(), DidYouMean(key.str(), rule.KeyNames(), 20)));
     }
   }
   for (const KeyRule& key : rule.keys) {

@@ -8,11 +8,12 @@
 namespace kompono::layout {
 namespace {
 
+/// 0 for a word that is no unit.
 double LengthFactor(std::string_view unit) {
   if (unit == "m") return 1000.0;
   if (unit == "um") return 0.001;
   if (unit == "in") return 25.4;
-  return 1.0;
+  return unit == "mm" ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -21,7 +22,8 @@ Units UnitsOf(const toml::table& file) {
   Units units;
   const toml::table* table = TableAt(file, "units");
   if (table == nullptr) return units;
-  if (const auto length = TextAt(*table, "length")) {
+  const auto length = TextAt(*table, "length");
+  if (length && LengthFactor(*length) > 0.0) {
     units.length = LengthFactor(*length);
     units.length_name = *length;
   }

@@ -51,6 +51,7 @@ inline constexpr CodeTitle kUnknownNumber{"E0331", "number that the layout does 
 inline constexpr CodeTitle kCannotWrite{"E0332", "number that cannot be written into the file"};
 inline constexpr CodeTitle kCannotRead{"E0333", "file that cannot be read"};
 inline constexpr CodeTitle kUnknownLetter{"E0334", "not a letter of the block"};
+inline constexpr CodeTitle kNameTaken{"E0335", "block with the name of an axis or an end"};
 
 inline constexpr CodeTitle kHomeOutside{"W0301", "home outside its range"};
 inline constexpr CodeTitle kNoSpindle{"W0302", "'positioning' of an axis that is no spindle"};
@@ -72,8 +73,8 @@ inline constexpr std::array kCodes{
     codes::kLetterCount,      codes::kUnknownEnd,     codes::kUnknownStation,
     codes::kNeedsModule,      codes::kEmptyPattern,   codes::kMixedPattern,
     codes::kUnknownNumber,    codes::kCannotWrite,    codes::kCannotRead,
-    codes::kUnknownLetter,    codes::kHomeOutside,    codes::kNoSpindle,
-    codes::kOwnAxes,          codes::kBlockFound};
+    codes::kUnknownLetter,    codes::kNameTaken,      codes::kHomeOutside,
+    codes::kNoSpindle,        codes::kOwnAxes,        codes::kBlockFound};
 
 }  // namespace kompono::layout
 
