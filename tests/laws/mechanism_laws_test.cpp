@@ -141,8 +141,10 @@ TEST_P(MechanismLaws, PacksAgreeWithSinglePoses) {
                                      view.modes},
                                     {.values = single}),
                 Status::kOk);
+      // Near a limit a root of nearly nothing magnifies the rounding of what stands under it.
+      const double size = std::max(1.0, theta_.cwiseAbs().maxCoeff());
       for (std::size_t i = 0; i < single.size(); ++i) {
-        EXPECT_NEAR(q[i][k], single[i], 1e-13 * std::max(1.0, std::abs(single[i])))
+        EXPECT_NEAR(q[i][k], single[i], 1e-13 * std::max(size, std::abs(single[i])))
             << Where(poses_[k]);
       }
     }
@@ -152,7 +154,7 @@ TEST_P(MechanismLaws, PacksAgreeWithSinglePoses) {
 INSTANTIATE_TEST_SUITE_P(Shipped,
                          MechanismLaws,
                          testing::ValuesIn(tests::ShippedMachineFiles()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& instance) { return instance.param; });
 
 TEST(ShippedMachines, UseEveryRegisteredMechanism) {
   std::set<std::string> used;
