@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/diagnostics/suggestion.hpp"
 
 namespace kompono::calibration {
@@ -94,8 +95,10 @@ class HeaderReader {
     if (const auto drive = names_.find(split.base); drive != names_.end()) {
       return Reading(cell, split, drive->second, second);
     }
-    complaints_.Error(
-        "E0403", cell, fmt::format("unknown column '{}'", name), DidYouMean(name, KnownColumns()));
+    complaints_.Error(codes::kUnknownColumn.code,
+                      cell,
+                      fmt::format("unknown column '{}'", name),
+                      DidYouMean(name, KnownColumns()));
     return {};
   }
 
@@ -146,7 +149,7 @@ class HeaderReader {
             ? fmt::format("column '{}' does not tell its unit", cell.text)
             : fmt::format(
                   "column '{}' is {} and cannot be in '{}'", cell.text, quantity, split.unit);
-    complaints_.Error("E0406",
+    complaints_.Error(codes::kUnit.code,
                       cell,
                       message,
                       fmt::format("write '{}{}_{}' and give the numbers in {}",
@@ -166,7 +169,7 @@ class HeaderReader {
     };
     if (std::count_if(result.columns.begin(), result.columns.end(), same) > 1) {
       complaints_.Error(
-          "E0405",
+          codes::kRepeatedColumn.code,
           cell,
           fmt::format("column '{}' gives again what an earlier column gives", cell.text),
           "remove one of them");
@@ -176,7 +179,7 @@ class HeaderReader {
   void NoteIgnored(const TableRow& header) {
     if (!first_ignored_) return;
     complaints_.Add(Severity::kNote,
-                    "N0417",
+                    codes::kIgnoredColumns.code,
                     first_ignored_->begin,
                     first_ignored_->end,
                     fmt::format("{} of {} columns are not used: {}",
@@ -198,7 +201,7 @@ class HeaderReader {
       }
       if (missing.empty()) continue;
       complaints_.Add(Severity::kError,
-                      "E0404",
+                      codes::kMissingColumn.code,
                       header.begin,
                       header.end,
                       fmt::format("no column for {} of the {} drives: {}",

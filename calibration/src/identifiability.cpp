@@ -126,6 +126,7 @@ std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
   for (const int index : selection.free) {
     preferred.push_back(IsSingleNumber(machine.parameters()[static_cast<std::size_t>(index)].name));
   }
+  if (basis.cols() == 0) return directions;
   ReduceColumns(preferred, &basis);
   const NullWords words(machine, rows, theta);
   for (Eigen::Index k = 0; k < basis.cols(); ++k) {

@@ -14,6 +14,8 @@
 #include <limits>
 #include <random>
 
+#include "kompono/calibration/codes.hpp"
+
 namespace kompono::calibration {
 namespace {
 
@@ -65,7 +67,7 @@ class Identification {
     report_.theta_before = options_.start.value_or(machine_.nominal());
     report_.theta_after = report_.theta_before;
     if (report_.theta_before.size() != selection_.nominal.size()) {
-      return Refuse("E0434",
+      return Refuse(codes::kBadStart.code,
                     fmt::format("the start has {} numbers, the machine {}",
                                 report_.theta_before.size(),
                                 selection_.nominal.size()));
@@ -87,7 +89,7 @@ class Identification {
     }
     report_.rows_fitted = static_cast<int>(fitted_.size());
     report_.rows_held_out = static_cast<int>(rows_.size() - fitted_.size());
-    if (fitted_.empty()) return Refuse("E0435", "no row is left for the fit");
+    if (fitted_.empty()) return Refuse(codes::kNothingFitted.code, "no row is left for the fit");
     return true;
   }
 
@@ -114,7 +116,7 @@ class Identification {
           AboutRow(set_,
                    m,
                    Severity::kError,
-                   "E0451",
+                   codes::kNoPose.code,
                    fmt::format("row {}: the machine has no pose at these readings ({})",
                                m.row,
                                Name(prediction.status())),
@@ -196,13 +198,13 @@ class Identification {
     if (report_.status == IdentifyStatus::kForwardFailed) return;
     if (!fit.converged) {
       report_.status = IdentifyStatus::kIterationLimit;
-      Refuse("E0458",
+      Refuse(codes::kNotConverged.code,
              fmt::format("the solver did not converge in {} iterations ({})",
                          report_.iterations,
                          report_.solver_message));
     } else if (report_.dof <= 0 && analysis.gauge.cols() > 0) {
       report_.status = IdentifyStatus::kTooFewMeasurements;
-      Refuse("E0452",
+      Refuse(codes::kTooFew.code,
              fmt::format("{} measured numbers cannot determine {} parameters",
                          report_.numbers,
                          selection_.size()));

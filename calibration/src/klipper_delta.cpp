@@ -9,6 +9,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "kompono/calibration/codes.hpp"
+
 namespace kompono::calibration {
 namespace {
 
@@ -67,7 +69,8 @@ class JsonReader {
   }
 
   void Complain(std::string message) {
-    complaints_->push_back({.code = "E0422", .file = file_, .message = std::move(message)});
+    complaints_->push_back(
+        {.code = codes::kRunMember.code, .file = file_, .message = std::move(message)});
   }
 
   std::string file_;
@@ -101,7 +104,7 @@ Parsed<Places> FindPlaces(const kinematics::Machine& machine) {
   }
   if (!all) {
     return tl::unexpected(Diagnostics{
-        {.code = "E0425",
+        {.code = codes::kNotADelta.code,
          .file = machine.layout().file.string(),
          .message = "the machine is no linear delta with three drives, so that Klipper has no "
                     "words for its geometry"}});
@@ -135,14 +138,15 @@ Parsed<KlipperRun> ReadKlipperRun(const std::filesystem::path& json_file) {
   std::ifstream stream(json_file, std::ios::binary);
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf())) {
-    return tl::unexpected(Diagnostics{{.code = "E0401",
+    return tl::unexpected(Diagnostics{{.code = codes::kCannotRead.code,
                                        .file = json_file.string(),
                                        .message = "cannot read the description of the run"}});
   }
   const nlohmann::json json = nlohmann::json::parse(text.str(), nullptr, false);
   if (!json.is_object()) {
-    return tl::unexpected(Diagnostics{
-        {.code = "E0421", .file = json_file.string(), .message = "the file is no JSON object"}});
+    return tl::unexpected(Diagnostics{{.code = codes::kNotJson.code,
+                                       .file = json_file.string(),
+                                       .message = "the file is no JSON object"}});
   }
   Diagnostics complaints;
   JsonReader reader(json_file.string(), &complaints);

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 
 namespace kompono::calibration {
@@ -34,7 +35,7 @@ std::optional<Measurement> ReadRow(const TableRow& row, Complaints& complaints) 
   if (row.cells.size() != kHeader.size()) {
     complaints.Add(
         Severity::kError,
-        "E0407",
+        codes::kRagged.code,
         row.begin,
         row.end,
         fmt::format("the row has {} cells, the header {}", row.cells.size(), kHeader.size()),
@@ -49,7 +50,7 @@ std::optional<Measurement> ReadRow(const TableRow& row, Complaints& complaints) 
   } else if (kind.text == "height") {
     measurement.kind = MeasurementKind::kHeight;
   } else {
-    complaints.Error("E0410",
+    complaints.Error(codes::kUnknownKind.code,
                      kind,
                      fmt::format("unknown kind of measurement '{}'", kind.text),
                      "known are: height, distance");
@@ -112,7 +113,7 @@ Parsed<MeasurementSet> ImportKlipperDelta(std::string_view text,
   const Table table = SplitTable(text);
   if (machine.drives().size() != 3) {
     complaints.Add(Severity::kError,
-                   "E0424",
+                   codes::kNotThreeTowers.code,
                    table.header.begin,
                    table.header.end,
                    fmt::format("Klipper's delta runs have three towers, the machine has {} drives",
@@ -127,7 +128,7 @@ Parsed<MeasurementSet> ImportKlipperDelta(std::string_view text,
     set.measurements.push_back(std::move(*measurement));
   }
   if (table.rows.empty()) {
-    complaints.ErrorWithoutPlace("E0402", "the file has a header and no rows");
+    complaints.ErrorWithoutPlace(codes::kNoRows.code, "the file has a header and no rows");
   }
   if (complaints.HasErrors()) return tl::unexpected(complaints.Take());
   GiveWeights(&set);
@@ -135,7 +136,7 @@ Parsed<MeasurementSet> ImportKlipperDelta(std::string_view text,
   set.suggested_free = FreeOf(set, drive.substr(0, drive.find('.')));
   if (notes != nullptr) {
     notes->push_back({.severity = Severity::kNote,
-                      .code = "N0418",
+                      .code = codes::kKlipperRun.code,
                       .file = std::string(file),
                       .message = "a delta run of Klipper: readings are travels down from the "
                                  "end-stops, weights are Klipper's own"});

@@ -12,10 +12,12 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 #include "kompono/calibration/measurements.hpp"
 #include "kompono/diagnostics/suggestion.hpp"
@@ -63,7 +65,7 @@ class RowReader {
     if (row.cells.size() != columns_.columns.size()) {
       complaints_.Add(
           Severity::kError,
-          "E0407",
+          codes::kRagged.code,
           row.begin,
           row.end,
           fmt::format(
@@ -111,7 +113,7 @@ class RowReader {
       const Cell& cell = cells.row->cells[static_cast<std::size_t>(column)];
       const std::optional<MeasurementKind> kind = KindOf(cell.text);
       if (!kind) {
-        complaints_.Error("E0410",
+        complaints_.Error(codes::kUnknownKind.code,
                           cell,
                           fmt::format("unknown kind of measurement '{}'", cell.text),
                           DidYouMean(cell.text, KindNames()));
@@ -135,7 +137,7 @@ class RowReader {
       return turned ? MeasurementKind::kPose : MeasurementKind::kPosition;
     }
     Refuse(cells,
-           "E0416",
+           codes::kUnclearKind.code,
            value || position ? "the row may be of more than one kind"
                              : "the row does not tell what was measured",
            value || position
@@ -166,10 +168,10 @@ class RowReader {
     const int column = columns_.Find(role, index);
     if (cells.Empty(column)) {
       if (column < 0) {
-        Refuse(cells, "E0411", fmt::format("a {} and no column for it", what));
+        Refuse(cells, codes::kMissingValue.code, fmt::format("a {} and no column for it", what));
       } else {
         const Cell& cell = cells.row->cells[static_cast<std::size_t>(column)];
-        complaints_.Error("E0411",
+        complaints_.Error(codes::kMissingValue.code,
                           cell,
                           fmt::format("'{}' is empty, but the row is a {}",
                                       table_.header.cells[static_cast<std::size_t>(column)].text,
@@ -192,7 +194,7 @@ class RowReader {
     if (kind != MeasurementKind::kDistance) return;
     if (!columns_.Has(Role::kSecondReading)) {
       Refuse(cells,
-             "E0411",
+             codes::kMissingValue.code,
              "a distance needs the readings at its second point",
              "add columns second.<drive>_mm");
       return;
@@ -211,7 +213,9 @@ class RowReader {
       case MeasurementKind::kDistance:
         measurement.value_mm = Needed(cells, Role::kValue, 0, what);
         if (measurement.kind == MeasurementKind::kDistance && measurement.value_mm < 0.0) {
-          complaints_.Error("E0412", CellOf(cells, Role::kValue), "a distance cannot be negative");
+          complaints_.Error(codes::kOutOfRange.code,
+                            CellOf(cells, Role::kValue),
+                            "a distance cannot be negative");
           good_ = false;
         }
         return;
@@ -236,7 +240,7 @@ class RowReader {
           cells.value[static_cast<std::size_t>(column)];
     }
     if (!Filled(cells, Role::kPosition)) {
-      Refuse(cells, "E0411", "a position needs at least one of x_mm, y_mm, z_mm");
+      Refuse(cells, codes::kMissingValue.code, "a position needs at least one of x_mm, y_mm, z_mm");
     }
   }
 
@@ -245,7 +249,7 @@ class RowReader {
     const bool angles = Filled(cells, Role::kAngle);
     if (vector == angles) {
       Refuse(cells,
-             "E0411",
+             codes::kMissingValue.code,
              vector ? "the row gives its orientation twice" : "a pose needs an orientation",
              "fill either rx_rad, ry_rad, rz_rad or a_deg, b_deg, c_deg");
       return;
@@ -254,6 +258,15 @@ class RowReader {
     Eigen::Vector3d numbers;
     for (int i = 0; i < 3; ++i) numbers[i] = Needed(cells, role, i, "pose");
     if (vector) {
+      constexpr double kFullTurn = 2.0 * std::numbers::pi;
+      if (numbers.norm() > kFullTurn) {
+        complaints_.Error(
+            codes::kWrongScale.code,
+            CellOf(cells, role),
+            "the rotation vector is longer than a full turn, as if it were in degrees",
+            "give it in radians, or call the columns rx_deg, ry_deg, rz_deg");
+        good_ = false;
+      }
       measurement.R_WT = RotationFromVector(numbers);
     } else {
       kinematics::PoseNumbers pose;
@@ -274,7 +287,7 @@ class RowReader {
     if (cells.Empty(column)) return std::nullopt;
     const std::optional<double> sigma = cells.value[static_cast<std::size_t>(column)];
     if (sigma && *sigma <= 0.0) {
-      complaints_.Error("E0412",
+      complaints_.Error(codes::kOutOfRange.code,
                         CellOf(cells, role),
                         "a standard deviation must be greater than 0",
                         "leave the cell empty if it is not known");
@@ -290,7 +303,7 @@ class RowReader {
     if (cell.text == "1" || cell.text == "yes" || cell.text == "true") {
       measurement.held_out = true;
     } else if (cell.text != "0" && cell.text != "no" && cell.text != "false") {
-      complaints_.Error("E0413",
+      complaints_.Error(codes::kNotYesOrNo.code,
                         cell,
                         fmt::format("'{}' is neither yes nor no", cell.text),
                         "write 1 for a row that is kept out of the fit, else 0 or nothing");
@@ -318,7 +331,7 @@ void WarnOfRepeatedRows(std::string_view text, const Table& table, Complaints& c
     const auto [first, is_new] = seen.emplace(whole, row.line);
     if (is_new) continue;
     complaints.Add(Severity::kWarning,
-                   "W0414",
+                   codes::kRepeatedRow.code,
                    row.begin,
                    row.end,
                    fmt::format("the row is the same as line {}", first->second),
@@ -361,7 +374,7 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
   MeasurementSet set{.file = std::string(file), .text = std::string(text)};
   if (table.header.cells.empty() || table.rows.empty()) {
     complaints.ErrorWithoutPlace(
-        "E0402",
+        codes::kNoRows.code,
         table.header.cells.empty() ? "the file is empty" : "the file has a header and no rows",
         "a header line with the columns' names, then one line for each measurement");
     return tl::unexpected(complaints.Take());
@@ -369,7 +382,7 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
   const Columns columns = UnderstandHeader(table.header, machine, complaints);
   if (!columns.Has(Role::kValue) && !columns.Has(Role::kPosition)) {
     complaints.Add(Severity::kError,
-                   "E0404",
+                   codes::kMissingColumn.code,
                    table.header.begin,
                    table.header.end,
                    "no column for what was measured",
@@ -404,7 +417,7 @@ Parsed<MeasurementSet> ReadMeasurements(const std::filesystem::path& file,
   if (!stream || !(text << stream.rdbuf())) {
     const bool empty = stream.is_open() && std::filesystem::is_regular_file(file);
     return tl::unexpected(Diagnostics{
-        {.code = empty ? "E0402" : "E0401",
+        {.code = empty ? codes::kNoRows.code : codes::kCannotRead.code,
          .file = file.string(),
          .message = empty ? "the file is empty" : "cannot read the measurement file",
          .help = empty ? "a header line with the columns' names, then one line for each measurement"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 
@@ -19,7 +20,8 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMoves = 1e-6;  ///< of what the parts alone would move
-constexpr std::size_t kMostNamed = 8;
+constexpr std::size_t kMostNamed = 6;
+constexpr std::size_t kMostRows = 12;  ///< where further measurements are tried
 
 /// "struts.base[3].x" -> "struts.base[*].x"
 std::string WithoutIndex(const std::string& name) {
@@ -67,26 +69,41 @@ std::vector<Part> Grouped(const std::vector<Parameter>& parameters, const Eigen:
       parts.insert(parts.end(), group.begin(), group.end());
     }
   }
+  const auto indexed = [](const Part& part) { return part.name.find('[') != std::string::npos; };
+  std::stable_partition(parts.begin(), parts.end(), std::not_fn(indexed));
+  const double first = parts.empty() ? 1.0 : parts.front().value;
+  for (Part& part : parts) part.value /= first;  // the first changes by 1 mm or 1 deg
   return parts;
 }
 
-std::string Names(const std::vector<Part>& parts) {
-  std::vector<std::string> names;
+/// "struts.base" of "struts.base[3].x"; frames and single numbers are their own family.
+std::string Family(const std::string& name) {
+  return name.substr(0, name.find('['));
+}
+
+std::string Families(const std::vector<Part>& parts) {
+  std::vector<std::string> families;
   for (const Part& part : parts) {
-    if (names.size() == kMostNamed) {
-      names.push_back(fmt::format("and {} more", parts.size() - kMostNamed));
-      break;
+    const std::string family = Family(part.name);
+    if (std::find(families.begin(), families.end(), family) == families.end()) {
+      families.push_back(family);
     }
-    names.push_back(part.name);
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+  if (families.size() > kMostNamed) {
+    const std::size_t more = families.size() - kMostNamed;
+    families.resize(kMostNamed);
+    families.push_back(fmt::format("{} more", more));
+  }
+  const std::string last = families.back();
+  families.pop_back();
+  return families.empty() ? last : fmt::format("{} and {}", fmt::join(families, ", "), last);
 }
 
 std::string Changes(const std::vector<Part>& parts) {
   std::vector<std::string> changes;
   for (const Part& part : parts) {
     if (changes.size() == kMostNamed) {
-      changes.emplace_back("…");
+      changes.push_back(fmt::format("and {} more numbers", parts.size() - kMostNamed));
       break;
     }
     changes.push_back(
@@ -110,8 +127,8 @@ std::string Words(const std::vector<Part>& parts) {
                          ratio < 0.0 ? "sum" : "difference");
     }
   }
-  return fmt::format("{} cannot be told apart: together they may change without any effect ({})",
-                     Names(parts),
+  return fmt::format("{} cannot be told apart: they may change together without any effect ({})",
+                     Families(parts),
                      Changes(parts));
 }
 
@@ -150,6 +167,23 @@ NullWords::NullWords(const kinematics::Machine& machine,
       poses_.push_back(std::move(prediction.second));
     }
   }
+  FindStillDrives();
+  elsewhere_ = Shifted(std::vector<bool>(machine.drives().size(), true));
+}
+
+void NullWords::FindStillDrives() {
+  const std::size_t count = machine_.drives().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const bool still = std::all_of(rows_.begin(), rows_.end(), [this, k](const RowModel* row) {
+      return std::abs(row->measurement().readings[k] - rows_.front()->measurement().readings[k]) <
+             1e-9;
+    });
+    if (!still) continue;
+    std::vector<bool> one(count, false);
+    one[i] = true;
+    still_.push_back({machine_.drives()[i].name, Shifted(one)});
+  }
 }
 
 NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
@@ -174,8 +208,7 @@ NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
 }
 
 std::string NullWords::Remedy(const Eigen::VectorXd& change) const {
-  Motion here;
-  for (const MeasuredPose& pose : poses_) here.Add(pose, change);
+  const Motion here = MotionAt(poses_, change);
   constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
   std::vector<std::string_view> moved;
   for (int i = 0; i < 3; ++i) {
@@ -185,53 +218,41 @@ std::string NullWords::Remedy(const Eigen::VectorXd& change) const {
     return fmt::format("measure the tool point's {} as well", fmt::join(moved, ", "));
   }
   if (here.Turns()) return "measure the tool's orientation as well (poses)";
-  return OtherReadings(change);
-}
-
-NullWords::Motion NullWords::MotionAtShifted(const Eigen::VectorXd& change,
-                                             const std::vector<bool>& drives) const {
-  Motion motion;
-  constexpr std::array<double, 6> kPattern{1.0, -0.6, 0.35, -0.85, 0.5, -0.2};
-  for (const RowModel* row : rows_) {
-    Eigen::VectorXd readings = row->measurement().readings;
-    for (Eigen::Index i = 0; i < readings.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (!drives[k]) continue;
-      const double step = machine_.drives()[k].rotary ? 0.1 : 10.0;
-      readings[i] +=
-          step * kPattern[(k + static_cast<std::size_t>(row->measurement().row)) % kPattern.size()];
-    }
-    const MeasuredPose pose = machine_.Measure(readings, theta_, machine_.home(), true);
-    if (pose.status == kinematics::SolveStatus::kConverged) motion.Add(pose, change);
-  }
-  return motion;
-}
-
-/// Drives that stood still in all rows are tried first: moving one of them is the usual way out.
-std::string NullWords::OtherReadings(const Eigen::VectorXd& change) const {
-  const std::size_t count = machine_.drives().size();
-  std::vector<bool> still(count, true);
-  for (const RowModel* row : rows_) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      if (std::abs(row->measurement().readings[k] - rows_.front()->measurement().readings[k]) >
-          1e-9) {
-        still[i] = false;
-      }
+  // Moving a drive that stood still in all rows is the usual way out.
+  for (const StillDrive& drive : still_) {
+    if (MotionAt(drive.moved, change).Any()) {
+      return fmt::format("measure at other positions of {} too", drive.name);
     }
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!still[i]) continue;
-    std::vector<bool> one(count, false);
-    one[i] = true;
-    if (MotionAtShifted(change, one).Any()) {
-      return fmt::format("measure at other positions of {} too", machine_.drives()[i].name);
-    }
-  }
-  if (MotionAtShifted(change, std::vector<bool>(count, true)).Any()) {
+  if (MotionAt(elsewhere_, change).Any()) {
     return "measure at more and more different places and orientations";
   }
   return {};
+}
+
+NullWords::Motion NullWords::MotionAt(const std::vector<MeasuredPose>& poses,
+                                      const Eigen::VectorXd& change) const {
+  Motion motion;
+  for (const MeasuredPose& pose : poses) motion.Add(pose, change);
+  return motion;
+}
+
+std::vector<MeasuredPose> NullWords::Shifted(const std::vector<bool>& drives) const {
+  constexpr std::array<double, 6> kPattern{1.0, -0.6, 0.35, -0.85, 0.5, -0.2};
+  std::vector<MeasuredPose> poses;
+  const std::size_t stride = rows_.size() / kMostRows + 1;
+  for (std::size_t i = 0; i < rows_.size(); i += stride) {
+    Eigen::VectorXd readings = rows_[i]->measurement().readings;
+    for (std::size_t k = 0; k < drives.size(); ++k) {
+      const double step = machine_.drives()[k].rotary ? 0.1 : 10.0;
+      if (drives[k]) {
+        readings[static_cast<Eigen::Index>(k)] += step * kPattern[(k + i) % kPattern.size()];
+      }
+    }
+    MeasuredPose pose = machine_.Measure(readings, theta_, rows_[i]->start(), true);
+    if (pose.status == kinematics::SolveStatus::kConverged) poses.push_back(std::move(pose));
+  }
+  return poses;
 }
 
 }  // namespace kompono::calibration

@@ -38,14 +38,23 @@ class NullWords {
   };
 
   [[nodiscard]] std::string Remedy(const Eigen::VectorXd& change) const;
-  [[nodiscard]] std::string OtherReadings(const Eigen::VectorXd& change) const;
-  [[nodiscard]] Motion MotionAtShifted(const Eigen::VectorXd& change,
-                                       const std::vector<bool>& drives) const;
+  [[nodiscard]] Motion MotionAt(const std::vector<kinematics::MeasuredPose>& poses,
+                                const Eigen::VectorXd& change) const;
+  /// Poses of some rows with the chosen drives moved a little.
+  [[nodiscard]] std::vector<kinematics::MeasuredPose> Shifted(
+      const std::vector<bool>& drives) const;
+  void FindStillDrives();
 
   const kinematics::Machine& machine_;
   const std::vector<RowModel*>& rows_;
   const Eigen::VectorXd& theta_;
-  std::vector<kinematics::MeasuredPose> poses_;
+  std::vector<kinematics::MeasuredPose> poses_;  ///< at the measured readings
+  struct StillDrive {
+    std::string name;
+    std::vector<kinematics::MeasuredPose> moved;
+  };
+  std::vector<StillDrive> still_;                    ///< drives with the same reading in all rows
+  std::vector<kinematics::MeasuredPose> elsewhere_;  ///< with all drives moved
 };
 
 }  // namespace kompono::calibration

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/calibration/report.hpp"
 #include "kompono/layout/layout.hpp"
 
@@ -191,7 +192,7 @@ Parsed<std::string> CalibratedLayout(const kinematics::Machine& machine,
   if (!report.ok()) {
     Diagnostics complaints = report.diagnostics;
     if (!HasErrors(complaints)) {
-      complaints.push_back({.code = "E0458",
+      complaints.push_back({.code = codes::kNotConverged.code,
                             .file = machine.layout().file.string(),
                             .message = "an identification that failed changes no layout"});
     }

@@ -64,6 +64,7 @@ class RowModel {
 
   [[nodiscard]] const Measurement& measurement() const { return *measurement_; }
   [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
   [[nodiscard]] RowErrors Errors(const Prediction& prediction) const {
     return ErrorsOf(*measurement_, prediction.first.X_WT, prediction.second.X_WT);
   }

@@ -7,33 +7,30 @@
 #include <cmath>
 #include <set>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/diagnostics/suggestion.hpp"
+#include "kompono/layout/numbers.hpp"
 
 namespace kompono::calibration {
 namespace {
 
-/// `*` matches any characters, everything else itself; linear in the product of the lengths.
-bool MatchesGlob(std::string_view pattern, std::string_view name) {
-  std::size_t p = 0;
-  std::size_t n = 0;
-  std::size_t star = std::string_view::npos;
-  std::size_t resume = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      resume = n;
-    } else if (p < pattern.size() && pattern[p] == name[n]) {
-      ++p;
-      ++n;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      n = ++resume;
-    } else {
-      return false;
+/// Other forms of a parameter's name that layouts accept: "Z.x" of "Z.position.x", "tool.length" of
+/// "P_z.length" if the table is called [tool].
+std::vector<std::string> NamesOf(const layout::Layout& layout, const std::string& name) {
+  std::vector<std::string> names{name};
+  for (const std::string_view key : {".position.", ".rotation."}) {
+    const std::size_t at = name.rfind(key);
+    if (at == std::string::npos || at + key.size() + 1 != name.size()) continue;
+    names.push_back(name.substr(0, at) + "." + name.back());
+  }
+  for (const layout::End& end : layout.ends) {
+    if (end.table == end.name || !name.starts_with(end.name + ".")) continue;
+    const std::size_t count = names.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      names.push_back(end.table + names[i].substr(end.name.size()));
     }
   }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
+  return names;
 }
 
 /// What one unit of u is: the manufacturing tolerance; where none is known, much less is known of
@@ -60,7 +57,8 @@ class Selector {
       if (chosen_[i]) selection.free.push_back(static_cast<int>(i));
     }
     if (selection.free.empty() && complaints_.empty()) {
-      Complain("E0432", "no parameter is free, so that there is nothing to identify");
+      Complain(codes::kNothingFree.code,
+               "no parameter is free, so that there is nothing to identify");
     }
     selection.scale.resize(selection.size());
     for (std::size_t i = 0; i < selection.free.size(); ++i) {
@@ -83,7 +81,9 @@ class Selector {
   void ChooseFree() {
     if (!options_.free.empty()) {
       Mark(options_.free, true, "free");
-    } else if (!settings().free.empty()) {
+      return;
+    }
+    if (!settings().free.empty()) {
       Mark(settings().free, true, "the layout's [calibration] free");
     } else if (!set_.suggested_free.empty()) {
       Mark(set_.suggested_free, true, set_.origin);
@@ -91,6 +91,20 @@ class Selector {
       for (std::size_t i = 0; i < chosen_.size(); ++i) {
         chosen_[i] = machine_.parameters()[i].identifiable;
       }
+    }
+    KeepSuggested();
+  }
+
+  /// What a format knows not to be visible in its files is not fitted for being in the layout.
+  void KeepSuggested() {
+    if (set_.suggested_free.empty()) return;
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+      const std::string& name = machine_.parameters()[i].name;
+      chosen_[i] = chosen_[i] && std::any_of(set_.suggested_free.begin(),
+                                             set_.suggested_free.end(),
+                                             [&name](const std::string& pattern) {
+                                               return layout::MatchesPattern(pattern, name);
+                                             });
     }
   }
 
@@ -110,7 +124,7 @@ class Selector {
   std::vector<int> Matching(const std::string& pattern, std::string_view where) {
     std::vector<int> matching;
     for (std::size_t i = 0; i < machine_.parameters().size(); ++i) {
-      if (MatchesPattern(pattern, machine_.parameters()[i].name)) {
+      if (NamesParameter(machine_, pattern, machine_.parameters()[i].name)) {
         matching.push_back(static_cast<int>(i));
       }
     }
@@ -145,7 +159,7 @@ class Selector {
             *selection,
             [this, selection](std::size_t i, double sigma) {
               if (!(sigma > 0.0)) {
-                Complain("E0433",
+                Complain(codes::kBadPrior.code,
                          fmt::format("the prior deviation of {} must be greater than 0",
                                      At(selection->free[i]).name));
               }
@@ -161,7 +175,7 @@ class Selector {
             *selection,
             [this, selection](std::size_t i, const std::array<double, 2>& bounds) {
               if (!(bounds[0] < bounds[1])) {
-                Complain("E0433",
+                Complain(codes::kBadPrior.code,
                          fmt::format("the bounds of {} leave no room between {:g} and {:g}",
                                      At(selection->free[i]).name,
                                      bounds[0],
@@ -186,12 +200,6 @@ class Selector {
 
 }  // namespace
 
-bool MatchesPattern(std::string_view pattern, std::string_view name) {
-  if (MatchesGlob(pattern, name)) return true;
-  return name.size() > pattern.size() && name.starts_with(pattern) &&
-         (name[pattern.size()] == '.' || name[pattern.size()] == '[');
-}
-
 Eigen::VectorXd Selection::Theta(const double* u) const {
   Eigen::VectorXd theta = nominal;
   for (Eigen::Index i = 0; i < size(); ++i) {
@@ -209,6 +217,15 @@ Eigen::VectorXd Selection::Unknowns(const Eigen::VectorXd& theta) const {
   return u;
 }
 
+bool NamesParameter(const kinematics::Machine& machine,
+                    std::string_view pattern,
+                    const std::string& name) {
+  const std::vector<std::string> names = NamesOf(machine.layout(), name);
+  return std::any_of(names.begin(), names.end(), [pattern](const std::string& form) {
+    return layout::MatchesPattern(pattern, form);
+  });
+}
+
 Diagnostic UnknownPattern(const kinematics::Machine& machine,
                           std::string_view pattern,
                           std::string_view where) {
@@ -222,7 +239,7 @@ Diagnostic UnknownPattern(const kinematics::Machine& machine,
     }
   }
   const std::vector<std::string> names(known.begin(), known.end());
-  return {.code = "E0431",
+  return {.code = codes::kUnknownParameter.code,
           .file = machine.layout().file.string(),
           .message = fmt::format("no parameter is called '{}' ({})", pattern, where),
           .help = DidYouMean(pattern, names)};

@@ -29,6 +29,11 @@ struct Selection {
                                                const MeasurementSet& set,
                                                const IdentifyOptions& options);
 
+/// A pattern may use every form of a name that layouts accept.
+[[nodiscard]] bool NamesParameter(const kinematics::Machine& machine,
+                                  std::string_view pattern,
+                                  const std::string& name);
+
 /// E0431, with what was perhaps meant.
 [[nodiscard]] Diagnostic UnknownPattern(const kinematics::Machine& machine,
                                         std::string_view pattern,

@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/diagnostics/suggestion.hpp"
 
 namespace kompono::calibration {
@@ -51,13 +52,13 @@ class PoseSampler {
     for (const auto& [name, range] : options.region) {
       if (machine_.FindCoordinate(name) < 0) {
         complaints.push_back(Complaint(machine_,
-                                       "E0444",
+                                       codes::kBadSimulation.code,
                                        fmt::format("the machine has no coordinate '{}'", name),
                                        DidYouMean(name, names)));
       } else if (!(range[0] <= range[1])) {
         complaints.push_back(Complaint(
             machine_,
-            "E0444",
+            codes::kBadSimulation.code,
             fmt::format("the range of {} runs from {:g} down to {:g}", name, range[0], range[1])));
       }
     }
@@ -68,7 +69,7 @@ class PoseSampler {
     if (!without.empty() && !AllDrivesLimited()) {
       complaints.push_back(Complaint(
           machine_,
-          "E0441",
+          codes::kNoRange.code,
           fmt::format("poses cannot be drawn: no range is known of {}", fmt::join(without, ", ")),
           "give the ranges in the layout or as a region"));
     }
@@ -184,12 +185,12 @@ Diagnostics CheckSimulation(const kinematics::Machine& nominal,
     same = nominal.drives()[i].name == truth.drives()[i].name;
   }
   if (!same) {
-    complaints.push_back(
-        Complaint(truth, "E0443", "the true machine has other drives than the nominal one"));
+    complaints.push_back(Complaint(
+        truth, codes::kOtherDrives.code, "the true machine has other drives than the nominal one"));
   }
   if (static_cast<std::size_t>(theta_true.size()) != truth.parameters().size()) {
     complaints.push_back(Complaint(truth,
-                                   "E0444",
+                                   codes::kBadSimulation.code,
                                    fmt::format("the true geometry has {} numbers, the machine {}",
                                                theta_true.size(),
                                                truth.parameters().size())));
@@ -199,7 +200,7 @@ Diagnostics CheckSimulation(const kinematics::Machine& nominal,
   if (options.count < 1 || options.held_out < 0 || options.sigma_mm < 0.0 ||
       options.sigma_rad < 0.0 || !any_component) {
     complaints.push_back(Complaint(nominal,
-                                   "E0444",
+                                   codes::kBadSimulation.code,
                                    "at least one row and one component have to be measured, and no "
                                    "deviation can be negative"));
   }
@@ -242,7 +243,7 @@ Parsed<MeasurementSet> Simulate(const kinematics::Machine& nominal,
     if (!first.ok() || !second.ok()) {
       return tl::unexpected(Diagnostics{Complaint(
           nominal,
-          "E0442",
+          codes::kFewPoses.code,
           fmt::format(
               "only {} of {} poses were found inside the ranges and drive limits", i, wanted),
           "make the region smaller or the drives' ranges larger")});
@@ -265,7 +266,7 @@ Parsed<Eigen::VectorXd> ChangedGeometry(const kinematics::Machine& machine,
   for (const auto& [pattern, change] : changes) {
     bool any = false;
     for (std::size_t i = 0; i < machine.parameters().size(); ++i) {
-      if (!MatchesPattern(pattern, machine.parameters()[i].name)) continue;
+      if (!NamesParameter(machine, pattern, machine.parameters()[i].name)) continue;
       theta[static_cast<Eigen::Index>(i)] += change;
       any = true;
     }

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <utility>
 
+#include "kompono/calibration/codes.hpp"
+
 namespace kompono::calibration {
 namespace {
 
@@ -80,7 +82,7 @@ void WarnOfContradiction(const MeasurementSet& set, CalibrationReport* report) {
   if (ratio < SurelyTooLarge(report->dof)) return;
   report->diagnostics.push_back(
       Warning(set,
-              "W0454",
+              codes::kContradiction.code,
               fmt::format("the errors left are {:.3g} times what the given deviations allow: the "
                           "measurements contradict each other or this model of the machine",
                           std::sqrt(ratio)),
@@ -103,7 +105,7 @@ void WarnOfOutliers(const MeasurementSet& set, CalibrationReport* report) {
     report->diagnostics.push_back(AboutRow(set,
                                            set.measurements[i],
                                            Severity::kWarning,
-                                           "W0455",
+                                           codes::kOutlier.code,
                                            fmt::format("row {} is off by {:.3g} times the usual "
                                                        "error of the rows ({:.4g} mm)",
                                                        row.row,
@@ -117,14 +119,14 @@ void WarnOfParameters(const MeasurementSet& set, CalibrationReport* report) {
   for (const IdentifiedParameter& parameter : report->parameters) {
     if (parameter.at_bound) {
       report->diagnostics.push_back(
-          Warning(set, "W0457", fmt::format("{} ended at its bound", parameter.name)));
+          Warning(set, codes::kAtBound.code, fmt::format("{} ended at its bound", parameter.name)));
     }
     const double most = kFarFromNominal_tolerances * parameter.tolerance;
     if (parameter.tolerance > 0.0 && std::abs(parameter.change()) > most) {
       const double factor = parameter.angle ? kDegPerRad : 1.0;
       report->diagnostics.push_back(
           Warning(set,
-                  "W0456",
+                  codes::kFarFromNominal.code,
                   fmt::format("{} changed by {:+.4g} {}, {:.0f} times its manufacturing tolerance",
                               parameter.name,
                               parameter.change() * factor,
@@ -141,7 +143,7 @@ void WarnOfHeldOut(const MeasurementSet& set, CalibrationReport* report) {
     if (held_out.rms_after > held_out.rms_before) {
       report->diagnostics.push_back(Warning(
           set,
-          "W0459",
+          codes::kHeldOutWorse.code,
           fmt::format("the held-out rows became worse: {} RMS {:.4g} before, {:.4g} {} after",
                       held_out.quantity,
                       held_out.rms_before,
@@ -186,7 +188,7 @@ void JudgeRows(const MeasurementSet& set,
           set,
           measurement,
           Severity::kError,
-          "E0451",
+          codes::kNoPose.code,
           fmt::format("row {}: with the identified geometry the machine has no pose at these "
                       "readings ({})",
                       measurement.row,
@@ -276,12 +278,13 @@ void WarnOfDoubts(const MeasurementSet& set,
                   const Selection& selection,
                   CalibrationReport* report) {
   for (const NullDirection& direction : report->unidentifiable) {
-    report->diagnostics.push_back(Warning(set, "W0453", direction.words, direction.remedy));
+    report->diagnostics.push_back(
+        Warning(set, codes::kNotDetermined.code, direction.words, direction.remedy));
   }
   if (report->dof == 0) {
     report->diagnostics.push_back(
         Warning(set,
-                "W0452",
+                codes::kExactFit.code,
                 fmt::format("{} numbers for {} unknowns: the fit is exact whatever was measured, "
                             "and its errors say nothing",
                             report->numbers,

@@ -10,6 +10,8 @@
 #include <limits>
 #include <numbers>
 
+#include "kompono/calibration/codes.hpp"
+
 namespace kompono::calibration {
 namespace {
 
@@ -17,13 +19,6 @@ constexpr std::size_t kMostRows = 60;   ///< enough for a median
 constexpr double kSuspicious_mm = 1.0;  ///< smaller errors are not a matter of units
 constexpr double kSuspicious_rad = 0.05;
 constexpr double kGain = 100.0;
-
-/// Factors on what the file says.
-struct Factors {
-  double lengths = 1.0;
-  double readings = 1.0;
-  double rotations = 1.0;
-};
 
 struct MedianError {
   double mm = std::numeric_limits<double>::infinity();
@@ -43,49 +38,150 @@ void ScaleReadings(const kinematics::Machine& machine, double factor, Eigen::Vec
   }
 }
 
-MedianError ErrorWith(const kinematics::Machine& machine,
-                      const MeasurementSet& set,
-                      const Factors& factors) {
-  std::vector<double> lengths;
-  std::vector<double> angles;
+struct Sample {
+  const Measurement* measurement;
+  RowModel::Prediction prediction;
+};
+
+/// What the nominal machine says of some rows when linear readings are multiplied by `factor`.
+/// Stops when more than half of them have no pose, for then nothing can be said.
+std::vector<Sample> Predict(const kinematics::Machine& machine,
+                            const MeasurementSet& set,
+                            double factor) {
+  std::vector<Sample> samples;
   const Eigen::VectorXd theta = machine.nominal();
-  const Eigen::VectorXd home = machine.home();
-  const std::size_t stride = std::max<std::size_t>(1, set.measurements.size() / kMostRows);
-  for (std::size_t i = 0; i < set.measurements.size(); i += stride) {
-    Measurement measurement = set.measurements[i];
-    ScaleReadings(machine, factors.readings, &measurement.readings);
-    ScaleReadings(machine, factors.readings, &measurement.second_readings);
-    measurement.value_mm *= factors.lengths;
+  const std::size_t stride = set.measurements.size() / kMostRows + 1;
+  const std::size_t rows = (set.measurements.size() + stride - 1) / stride;
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < set.measurements.size() && 2 * failed <= rows; i += stride) {
+    Measurement scaled = set.measurements[i];
+    ScaleReadings(machine, factor, &scaled.readings);
+    ScaleReadings(machine, factor, &scaled.second_readings);
+    const RowModel row(machine, scaled, 1.0, 1.0);
+    samples.push_back({&set.measurements[i], row.Predict(theta, false)});
+    failed += samples.back().prediction.ok() ? 0 : 1;
+  }
+  if (2 * failed > rows) samples.clear();
+  return samples;
+}
+
+MedianError ErrorOf(const std::vector<Sample>& samples, double lengths, double rotations) {
+  std::vector<double> errors;
+  std::vector<double> angles;
+  for (const Sample& sample : samples) {
+    Measurement measurement = *sample.measurement;
+    measurement.value_mm *= lengths;
     for (std::optional<double>& component : measurement.position_mm) {
-      if (component) *component *= factors.lengths;
+      if (component) *component *= lengths;
     }
-    if (factors.rotations != 1.0) {
-      measurement.R_WT = RotationFromVector(factors.rotations * RotationVector(measurement.R_WT));
+    if (rotations != 1.0) {
+      measurement.R_WT = RotationFromVector(rotations * RotationVector(measurement.R_WT));
     }
-    const RowModel row(machine, measurement, 1.0, 1.0);
-    const RowModel::Prediction prediction = row.Predict(theta, false);
+    const bool ok = sample.prediction.ok();
     const double infinity = std::numeric_limits<double>::infinity();
-    lengths.push_back(prediction.ok() ? row.Errors(prediction).LengthNorm() : infinity);
+    const RowErrors error =
+        ErrorsOf(measurement, sample.prediction.first.X_WT, sample.prediction.second.X_WT);
+    errors.push_back(ok ? error.LengthNorm() : infinity);
     if (measurement.kind == MeasurementKind::kPose) {
-      angles.push_back(prediction.ok() ? row.Errors(prediction).AngleNorm() : infinity);
+      angles.push_back(ok ? error.AngleNorm() : infinity);
     }
   }
-  return {Median(lengths), Median(angles)};
+  return {Median(errors), Median(angles)};
 }
 
-bool FarBetter(double before, double after, double suspicious) {
-  return before > suspicious && std::isfinite(after) && after * kGain < before;
+/// A unit that would take most readings out of the drives' ranges is no explanation.
+bool WithinLimits(const kinematics::Machine& machine, const MeasurementSet& set, double factor) {
+  std::size_t outside = 0;
+  for (const Measurement& measurement : set.measurements) {
+    for (std::size_t i = 0; i < machine.drives().size(); ++i) {
+      const kinematics::Drive& drive = machine.drives()[i];
+      const double reading =
+          measurement.readings[static_cast<Eigen::Index>(i)] * (drive.rotary ? 1.0 : factor);
+      if (reading >= drive.lower.value_or(reading) && reading <= drive.upper.value_or(reading)) {
+        continue;
+      }
+      ++outside;
+      break;
+    }
+  }
+  return 2 * outside <= set.measurements.size();
 }
 
-std::string Before(double error_mm) {
-  return std::isfinite(error_mm) ? fmt::format("{:.4g} mm", error_mm)
-                                 : std::string("readings without a pose");
-}
-
+/// The columns whose unit is doubted, and the factor that would make them millimetres.
 struct Suspect {
-  Factors factors;
-  Role role;
-  std::string what;
+  bool readings;
+  double factor;
+  std::string_view unit;
+};
+
+class UnitCheck {
+ public:
+  UnitCheck(const kinematics::Machine& machine,
+            const MeasurementSet& set,
+            const TableRow& header,
+            const Columns& columns,
+            Complaints& complaints)
+      : machine_(machine), set_(set), header_(header), columns_(columns), complaints_(complaints) {}
+
+  void Run() {
+    const std::vector<Sample> samples = Predict(machine_, set_, 1.0);
+    const MedianError before = ErrorOf(samples, 1.0, 1.0);
+    if (before.mm > kSuspicious_mm && DoubtLengths(samples, before.mm)) return;
+    DoubtRotations(samples, before.rad);
+  }
+
+ private:
+  bool DoubtLengths(const std::vector<Sample>& samples, double before_mm) {
+    constexpr std::array<Suspect, 4> kSuspects{Suspect{false, 1e3, "metres"},
+                                               Suspect{true, 1e3, "metres"},
+                                               Suspect{false, 1e-3, "micrometres"},
+                                               Suspect{true, 1e-3, "micrometres"}};
+    for (const Suspect& suspect : kSuspects) {
+      if (suspect.readings && !WithinLimits(machine_, set_, suspect.factor)) continue;
+      const MedianError after = suspect.readings
+                                    ? ErrorOf(Predict(machine_, set_, suspect.factor), 1.0, 1.0)
+                                    : ErrorOf(samples, suspect.factor, 1.0);
+      if (!std::isfinite(after.mm) || after.mm * kGain > before_mm) continue;
+      const Role lengths = columns_.Has(Role::kPosition) ? Role::kPosition : Role::kValue;
+      Complain(suspect.readings ? Role::kReading : lengths,
+               fmt::format("it looks as if the {} are in {}: the median error against the nominal "
+                           "machine is {}, and {:.4g} mm after a factor of {:g}",
+                           suspect.readings ? "drive readings" : "measured lengths",
+                           suspect.unit,
+                           std::isfinite(before_mm) ? fmt::format("{:.4g} mm", before_mm)
+                                                    : std::string("not to be had"),
+                           after.mm,
+                           suspect.factor),
+               "give all lengths in millimetres, or switch the check of units off");
+      return true;
+    }
+    return false;
+  }
+
+  void DoubtRotations(const std::vector<Sample>& samples, double before_rad) {
+    if (!std::isfinite(before_rad) || before_rad < kSuspicious_rad ||
+        !columns_.Has(Role::kRotationVector)) {
+      return;
+    }
+    const MedianError after = ErrorOf(samples, 1.0, std::numbers::pi / 180.0);
+    if (after.rad * kGain > before_rad) return;
+    Complain(Role::kRotationVector,
+             "it looks as if the rotation vectors are in degrees",
+             "give them in radians, or call the columns rx_deg, ry_deg, rz_deg");
+  }
+
+  void Complain(Role role, std::string message, std::string help) {
+    std::size_t column = 0;
+    while (column + 1 < columns_.columns.size() && columns_.columns[column].role != role) ++column;
+    complaints_.Error(
+        codes::kWrongScale.code, header_.cells[column], std::move(message), std::move(help));
+  }
+
+  const kinematics::Machine& machine_;
+  const MeasurementSet& set_;
+  const TableRow& header_;
+  const Columns& columns_;
+  Complaints& complaints_;
 };
 
 }  // namespace
@@ -96,44 +192,7 @@ void CheckUnits(const kinematics::Machine& machine,
                 const Columns& columns,
                 Complaints& complaints) {
   if (set.measurements.empty()) return;
-  const MedianError before = ErrorWith(machine, set, {});
-  const auto complain = [&](Role role, std::string message, std::string help) {
-    const int column = columns.Find(role);
-    const Cell& cell = header.cells[static_cast<std::size_t>(std::max(0, column))];
-    complaints.Error("E0415", cell, std::move(message), std::move(help));
-  };
-  if (before.mm > kSuspicious_mm) {
-    const Role lengths = columns.Has(Role::kPosition) ? Role::kPosition : Role::kValue;
-    const std::array<Suspect, 4> suspects{
-        Suspect{{.lengths = 1e3}, lengths, "the measured lengths are in metres"},
-        Suspect{{.lengths = 1e-3}, lengths, "the measured lengths are in micrometres"},
-        Suspect{{.readings = 1e3}, Role::kReading, "the drive readings are in metres"},
-        Suspect{{.readings = 1e-3}, Role::kReading, "the drive readings are in micrometres"}};
-    for (const Suspect& suspect : suspects) {
-      const MedianError after = ErrorWith(machine, set, suspect.factors);
-      if (!FarBetter(before.mm, after.mm, kSuspicious_mm)) continue;
-      const double factor = suspect.factors.lengths * suspect.factors.readings;
-      complain(suspect.role,
-               fmt::format("it looks as if {}: the median error against the nominal machine is {}, "
-                           "and {:.4g} mm after a factor of {:g}",
-                           suspect.what,
-                           Before(before.mm),
-                           after.mm,
-                           factor),
-               "give all lengths in millimetres, or switch the check of units off");
-      return;
-    }
-  }
-  if (before.rad > kSuspicious_rad && std::isfinite(before.rad) &&
-      columns.Has(Role::kRotationVector)) {
-    const double factor = std::numbers::pi / 180.0;
-    const MedianError after = ErrorWith(machine, set, {.rotations = factor});
-    if (after.rad * kGain < before.rad) {
-      complain(Role::kRotationVector,
-               "it looks as if the rotation vectors are in degrees",
-               "give them in radians, or call the columns rx_deg, ry_deg, rz_deg");
-    }
-  }
+  UnitCheck(machine, set, header, columns, complaints).Run();
 }
 
 }  // namespace kompono::calibration

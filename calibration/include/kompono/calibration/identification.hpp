@@ -32,13 +32,10 @@
 /// tolerances, so that predictions are not disturbed and parameters do not wander.
 namespace kompono::calibration {
 
-/// Patterns: `*` stands for any characters, brackets are literal: "struts.base[*]", "*.zero". A
-/// name without the rest means all below it: "open_base", "struts.base".
-[[nodiscard]] bool MatchesPattern(std::string_view pattern, std::string_view name);
-
 struct IdentifyOptions {
-  /// What may change. The first of these that is not empty: this list; the layout's [calibration]
-  /// free; what the measurement format suggests; all parameters marked identifiable.
+  /// What may change, as patterns (layout::MatchesPattern): "struts.base[*]", "*.zero",
+  /// "open_base". Without: the layout's [calibration] free, or all parameters marked identifiable,
+  /// and of these only what the measurement format fits if it says so.
   std::vector<std::string> free;
   /// What may not. Added to the layout's lock, which holds unless `free` above is given.
   std::vector<std::string> lock;

@@ -48,7 +48,7 @@ struct MeasurementSet {
   std::string file;  ///< as the user named it
   std::string text;  ///< for complaints about single rows
   std::vector<Measurement> measurements;
-  /// What the format itself says may be fitted; used when neither the user nor the layout says so.
+  /// What the format itself says may be fitted; empty if it says nothing.
   std::vector<std::string> suggested_free;
   std::string origin;  ///< "klipper_delta" or empty
   bool relative_weights =

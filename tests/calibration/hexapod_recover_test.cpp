@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// 60 measured poses of a hexapod whose truth is known, judged on 100 others without noise. Data and
+// its model: tests/calibration/data/README.md.
+#include "machines.hpp"
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kompono/calibration/identification.hpp"
+#include "kompono/calibration/measurements.hpp"
+#include "kompono/calibration/report.hpp"
+
+namespace kompono::calibration {
+namespace {
+
+using testing::Good;
+using ::testing::HasSubstr;
+using testing::kData;
+using testing::MachineOf;
+
+constexpr double kNoise_mm = 0.005;
+constexpr double kNoise_rad = 5e-6;
+
+/// `train` for the fit and `valid` held out.
+MeasurementSet TrainAndValid(const kinematics::Machine& machine,
+                             const std::string& train,
+                             const std::string& valid,
+                             const ReadOptions& options = {}) {
+  MeasurementSet set = Good(ReadMeasurements(kData / train, machine, options));
+  for (Measurement& m : set.measurements) {
+    m.sigma_mm = kNoise_mm;
+    m.sigma_rad = kNoise_rad;
+  }
+  for (Measurement m : Good(ReadMeasurements(kData / valid, machine, options)).measurements) {
+    m.held_out = true;
+    m.line = 0;
+    set.measurements.push_back(m);
+  }
+  return set;
+}
+
+double RmsAfter(const CalibrationReport& report, const std::string& quantity, bool held_out) {
+  for (const ErrorStatistics& s : report.statistics) {
+    if (s.quantity == quantity && s.held_out == held_out) return s.rms_after;
+  }
+  return -1.0;
+}
+
+TEST(Hexapod, FortyTwoParametersAreRecoveredFromSixtyPoses) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  const MeasurementSet set =
+      TrainAndValid(machine, "hexapod_train60.csv", "hexapod_valid100_noisefree.csv");
+  const CalibrationReport report = Identify(machine, set);
+  ASSERT_EQ(report.status, IdentifyStatus::kConverged) << RenderText(report);
+  EXPECT_EQ(report.rank, 42);
+  EXPECT_EQ(report.dof, 360 - 42);
+  EXPECT_NEAR(report.sigma0, 1.0, 0.15) << "the noise was what the file says";
+  const double rms_mm = RmsAfter(report, "position", true);
+  RecordProperty("valid_position_rms_um", std::to_string(1e3 * rms_mm));
+  std::printf(
+      "validation: position %.3f um, orientation %.3f urad; fit %.1f ms, all %.1f ms; "
+      "predicted tool deviation %.3f um\n",
+      1e3 * rms_mm,
+      1e6 * RmsAfter(report, "orientation", true),
+      report.solver_ms,
+      report.total_ms,
+      1e3 * report.tool_sigma_rms_mm);
+  EXPECT_LT(rms_mm, 2.1e-3);
+  EXPECT_GT(rms_mm, 1.0e-3) << "better than the noise allows";
+}
+
+TEST(Hexapod, ErrorsOfTheParametersMatchTheirDeviations) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  const MeasurementSet set =
+      TrainAndValid(machine, "hexapod_train60.csv", "hexapod_valid100_noisefree.csv");
+  const CalibrationReport report = Identify(machine, set);
+  ASSERT_TRUE(report.ok());
+  std::ifstream stream(kData / "truth.json");
+  const nlohmann::json truth = nlohmann::json::parse(stream);
+  ASSERT_EQ(report.parameters.size(), truth["truth"].size());
+  Eigen::VectorXd error(42);
+  for (std::size_t i = 0; i < report.parameters.size(); ++i) {
+    const IdentifiedParameter& parameter = report.parameters[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    error[k] = parameter.after - truth["truth"][i].get<double>();
+    ASSERT_TRUE(parameter.sigma);
+    EXPECT_LT(std::abs(error[k]), 4.0 * *parameter.sigma) << parameter.name;
+  }
+  // chi² with 42 degrees of freedom: 42 ± 9.2.
+  const double chi_squared = error.dot(report.covariance.ldlt().solve(error));
+  EXPECT_GT(chi_squared, 42.0 - 3.0 * 9.2);
+  EXPECT_LT(chi_squared, 42.0 + 3.0 * 9.2);
+}
+
+TEST(Hexapod, UnknownBaseAndTargetFramesAreFoundTooAndTheirGaugeIsNamed) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  const MeasurementSet set = TrainAndValid(
+      machine, "hexapod_mismatch_train60.csv", "hexapod_mismatch_valid100_noisefree.csv");
+  IdentifyOptions options;
+  options.free = {"struts", "tool.mount"};
+  const CalibrationReport report = Identify(machine, set, options);
+  ASSERT_EQ(report.status, IdentifyStatus::kRankDeficient) << RenderText(report);
+  EXPECT_EQ(report.free.size(), 54U);
+  EXPECT_EQ(report.rank, 42);
+  EXPECT_EQ(report.unidentifiable.size(), 12U);
+  const double rms_mm = RmsAfter(report, "position", true);
+  std::printf("%s", RenderText(report).c_str());
+  EXPECT_LT(rms_mm, 3.2e-3);
+  double wandered = 0.0;
+  for (const IdentifiedParameter& p : report.parameters) {
+    if (p.name.find(".mount.") == std::string::npos)
+      wandered = std::max(wandered, std::abs(p.change()));
+  }
+  EXPECT_LT(wandered, 1.5) << "the joints stay where their tolerances want them";
+}
+
+}  // namespace
+}  // namespace kompono::calibration
