@@ -68,6 +68,13 @@ TEST(UnsafePath, StickyBitDoesNotHelp) {
   ExpectDisabled(folder, "<plugins>");
 }
 
+TEST(UnsafePath, FolderNamedItselfIsJudgedWithoutItsNeighbours) {
+  const PluginFolder folder;
+  const std::array<fs::path, 1> slide{AddSlide(folder)};
+  LetEveryoneWrite(folder.root());
+  EXPECT_TRUE(Registry::Discover(slide).CreateMechanism("slide"));
+}
+
 TEST(UnsafePath, SidecarWritableForEveryone) {
   const PluginFolder folder;
   LetEveryoneWrite(AddSlide(folder) / "plugin.toml");

@@ -370,6 +370,59 @@ plugin.toml:18:1: error: unknown key 'stations' in module 'slide' [E0221]
 )");
 }
 
+TEST(Sidecar, EmptyWordsAreNoNames) {
+  EXPECT_EQ(Complaints(R"(kompono = 1
+id = ""
+version = ""
+contract = ""
+library = "libx.so"
+[[module]]
+id = ""
+kind = ""
+title = "t"
+letters = "X"
+drives = [{ name = "", kind = "linear" }]
+points = [""]
+links = [{ from = "", to = "A", kind = "rail" }]
+)"),
+            R"(plugin.toml:2:6: error: '' is no id of a plugin [E0224]
+ 2 | id = ""
+   |      ^~
+  help: an id is lower-case words joined by dots, as in org.example.crane
+plugin.toml:3:11: error: '' is no version [E0224]
+ 3 | version = ""
+   |           ^~
+  help: a version is three numbers, as in 0.1.0
+plugin.toml:4:12: error: '' is no contract version [E0224]
+ 4 | contract = ""
+   |            ^~
+  help: this kompono offers contract 1.0
+plugin.toml:7:6: error: '' is no id of a module [E0224]
+ 7 | id = ""
+   |      ^~
+  help: an id is lower-case letters, digits and '_', and begins with a letter
+plugin.toml:8:8: error: 'kind' cannot be '' [E0224]
+ 8 | kind = ""
+   |        ^~
+  help: known are: mechanism, unit
+plugin.toml:11:20: error: '' is no name [E0224]
+ 11 | drives = [{ name = "", kind = "linear" }]
+    |                    ^~
+  help: a name is letters, digits and '_', and begins with a letter
+plugin.toml:12:11: error: '' is no name [E0224]
+ 12 | points = [""]
+    |           ^~
+  help: a name is letters, digits and '_', and begins with a letter
+plugin.toml:13:19: error: '' is not one of this module's points [E0226]
+ 13 | links = [{ from = "", to = "A", kind = "rail" }]
+    |                   ^~
+plugin.toml:13:28: error: 'A' is not one of this module's points [E0226]
+ 13 | links = [{ from = "", to = "A", kind = "rail" }]
+    |                            ^~~
+9 errors
+)");
+}
+
 TEST(Sidecar, TextThatIsNotTomlSaysWhere) {
   // The words after the colon are the TOML library's.
   EXPECT_THAT(Complaints("kompono = 1\nid = \"open\nversion = 1\n"),

@@ -32,7 +32,7 @@ thread_local const char* library_being_opened = nullptr;
 /// The interfaces' type information lives in the contract's library. Naming it here keeps the
 /// linker from dropping that library from a program that makes modules only through plugins; they
 /// then find it already there and need no path to it, wherever they are installed.
-const std::type_info* volatile const interface_types[] = {&typeid(Mechanism), &typeid(Unit)};
+const std::type_info* volatile const kInterfaceTypes[] = {&typeid(Mechanism), &typeid(Unit)};
 
 /// An exception out of a static constructor cannot be stopped, but it can be said whose it was.
 [[noreturn]] void NameTheLibrary() {

@@ -28,8 +28,8 @@ bool IsDigit(char c) {
 
 /// Reads a name and sees that it is one and that it was not given before.
 std::string ReadName(TableReader& table, std::string_view key, std::set<std::string>& taken) {
-  const std::string name = table.String(key, Need::kRequired).value_or("");
-  if (name.empty()) return name;
+  std::string name = table.String(key, Need::kRequired).value_or("");
+  if (!table.IsString(key)) return name;
   if (!IsName(name)) {
     table.Complain("E0224",
                    key,
@@ -59,14 +59,15 @@ std::vector<std::string> ReadNames(TableReader& table,
                      "a name is letters, digits and '_', and begins with a letter");
     } else if (std::find(names.begin(), names.end(), name.value) != names.end()) {
       complaints.Add("E0225", name.span, fmt::format("'{}' is given twice", name.value));
+    } else {
+      names.push_back(std::move(name.value));
     }
-    names.push_back(std::move(name.value));
   }
   return names;
 }
 
 std::string ReadLetters(TableReader& table) {
-  const std::string letters = table.String("letters", Need::kRequired).value_or("");
+  std::string letters = table.String("letters", Need::kRequired).value_or("");
   for (std::size_t i = 0; i < letters.size(); ++i) {
     if (kLetters.find(letters[i]) == std::string_view::npos) {
       table.Complain("E0224",
@@ -125,7 +126,7 @@ std::vector<LinkDescription> ReadLinks(TableReader& table, const std::vector<std
     LinkDescription link;
     const auto end = [&entry, &points](std::string_view key) {
       std::string name = entry.String(key, Need::kRequired).value_or("");
-      if (!name.empty() && std::find(points.begin(), points.end(), name) == points.end()) {
+      if (entry.IsString(key) && std::find(points.begin(), points.end(), name) == points.end()) {
         entry.Complain("E0226",
                        key,
                        fmt::format("'{}' is not one of this module's points", name),
@@ -186,7 +187,7 @@ std::vector<ParameterDescription> ReadParameters(TableReader& table) {
 
 std::string ReadModuleId(TableReader& table, std::string_view what) {
   std::string id = table.String("id", Need::kRequired).value_or("");
-  if (id.empty()) return id;
+  if (!table.IsString("id")) return id;
   table.Rename(fmt::format("{} '{}'", what, id));
   if (!IsModuleId(id)) {
     table.Complain("E0224",

@@ -96,7 +96,7 @@ std::string ReadWord(TableReader& table,
                      std::string_view key,
                      Need need,
                      std::initializer_list<std::string_view> words) {
-  const std::string word = table.String(key, need).value_or("");
+  std::string word = table.String(key, need).value_or("");
   if (std::find(words.begin(), words.end(), word) != words.end()) return word;
   if (table.IsString(key)) {
     const std::vector<std::string> known(words.begin(), words.end());

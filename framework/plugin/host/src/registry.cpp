@@ -40,7 +40,7 @@ std::vector<fs::path> SidecarsIn(const fs::path& folder) {
   return sidecars;
 }
 
-FoundPlugin ReadPlugin(const fs::path& sidecar) {
+FoundPlugin ReadPlugin(const fs::path& sidecar, const fs::path& folder) {
   SidecarReading reading = ReadFileLeniently(sidecar);
   FoundPlugin found;
   found.record.description = std::move(reading.sidecar.plugin);
@@ -50,7 +50,7 @@ FoundPlugin ReadPlugin(const fs::path& sidecar) {
     found.record.description.id = sidecar.parent_path().filename().string();
   // A stranger who may write into the folder of folders can add a plugin to it, too.
   std::optional<Diagnostic> unsafe = JudgePath(sidecar);
-  if (!unsafe) unsafe = JudgePath(sidecar.parent_path());
+  if (!unsafe && sidecar.parent_path() != folder) unsafe = JudgePath(sidecar.parent_path());
   if (unsafe) found.record.reasons.insert(found.record.reasons.begin(), std::move(*unsafe));
   found.record.enabled = !HasErrors(found.record.reasons);
   return found;
@@ -175,7 +175,7 @@ Registry Registry::Discover(std::span<const std::filesystem::path> folders) {
     for (const fs::path& sidecar : SidecarsIn(folder)) {
       std::error_code error;
       if (seen.insert(fs::canonical(sidecar, error)).second)
-        state->found.push_back(ReadPlugin(sidecar));
+        state->found.push_back(ReadPlugin(sidecar, folder));
     }
   }
   DisableSecondOnes(state->found);

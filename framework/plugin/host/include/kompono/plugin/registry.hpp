@@ -61,6 +61,8 @@ class Registry {
   /// passed over.
   [[nodiscard]] static Registry Discover(std::span<const std::filesystem::path> folders);
 
+  Registry(const Registry&) = delete;
+  Registry& operator=(const Registry&) = delete;
   Registry(Registry&&) noexcept;
   Registry& operator=(Registry&&) noexcept;
   ~Registry();
