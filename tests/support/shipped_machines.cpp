@@ -45,6 +45,14 @@ bool OnHomesBranch(const kinematics::Machine& machine, const VectorXd& z) {
   return true;
 }
 
+kinematics::Machine Built(Parsed<layout::Layout> layout) {
+  if (!layout) throw std::runtime_error(RenderAll(layout.error(), {}));
+  Parsed<kinematics::Machine> machine =
+      kinematics::Machine::Build(std::move(*layout), ShippedRegistry());
+  if (!machine) throw std::runtime_error(RenderAll(machine.error(), {}));
+  return std::move(*machine);
+}
+
 }  // namespace
 
 const plugin::Registry& ShippedRegistry() {
@@ -69,12 +77,11 @@ std::vector<std::string> ShippedMachineFiles() {
 kinematics::Machine LoadMachine(const std::string& name) {
   const std::filesystem::path file =
       std::filesystem::path(KOMPONO_SOURCE_DIR) / "layouts/machines" / (name + ".toml");
-  Parsed<layout::Layout> layout = layout::ReadLayout(file, ShippedRegistry());
-  if (!layout) throw std::runtime_error(RenderAll(layout.error(), {}));
-  Parsed<kinematics::Machine> machine =
-      kinematics::Machine::Build(std::move(*layout), ShippedRegistry());
-  if (!machine) throw std::runtime_error(RenderAll(machine.error(), {}));
-  return std::move(*machine);
+  return Built(layout::ReadLayout(file, ShippedRegistry()));
+}
+
+kinematics::Machine MachineFromText(const std::string& toml) {
+  return Built(layout::ParseLayout(toml, "inline.toml", ShippedRegistry()));
 }
 
 unsigned Seed() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef KOMPONO_TESTS_LAWS_SHIPPED_MACHINES_HPP_
-#define KOMPONO_TESTS_LAWS_SHIPPED_MACHINES_HPP_
+#ifndef KOMPONO_TESTS_SUPPORT_SHIPPED_MACHINES_HPP_
+#define KOMPONO_TESTS_SUPPORT_SHIPPED_MACHINES_HPP_
 
 #include <random>
 #include <string>
@@ -16,6 +16,8 @@ namespace kompono::tests {
 [[nodiscard]] const plugin::Registry& ShippedRegistry();
 [[nodiscard]] std::vector<std::string> ShippedMachineFiles();  ///< names without ".toml"
 [[nodiscard]] kinematics::Machine LoadMachine(const std::string& name);
+/// From the text of a layout file. @throws std::runtime_error with the rendered diagnostics.
+[[nodiscard]] kinematics::Machine MachineFromText(const std::string& toml);
 
 /// The seed of this run: KOMPONO_TEST_SEED or a fixed one; printed with every failure.
 [[nodiscard]] unsigned Seed();
@@ -33,4 +35,4 @@ struct NamedPose {
 
 }  // namespace kompono::tests
 
-#endif  // KOMPONO_TESTS_LAWS_SHIPPED_MACHINES_HPP_
+#endif  // KOMPONO_TESTS_SUPPORT_SHIPPED_MACHINES_HPP_
