@@ -13,5 +13,8 @@ find_package(TBB REQUIRED)
 
 find_program(KOMPONO_CCACHE ccache)
 if(KOMPONO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${KOMPONO_CCACHE}")
+  # Paths relative to the build tree, so that every checkout shares what was compiled before.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}"
+      CCACHE_NOHASHDIR=1 "CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime"
+      "${KOMPONO_CCACHE}")
 endif()
