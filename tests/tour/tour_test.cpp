@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -108,6 +109,35 @@ TEST(Tour, ReadmeShowsWhatTheProgramDoes) {
         << outcome.talk;
   }
   if (update) Rewrite(file, document, outputs);
+}
+
+/// The targets of [text](target) and ![text](target) that are files of the repository.
+std::vector<std::string> LocalLinks(const std::string& text) {
+  static const std::regex link(R"(\]\(([^)#:\s]+)(#[^)]*)?\))");
+  std::vector<std::string> targets;
+  for (std::sregex_iterator i(text.begin(), text.end(), link); i != std::sregex_iterator(); ++i) {
+    targets.push_back((*i)[1]);
+  }
+  return targets;
+}
+
+TEST(Links, AreFoundInText) {
+  EXPECT_EQ(LocalLinks("see [a](docs/a.md#part), ![b](b.svg) and [c](https://example.org/c)"),
+            (std::vector<std::string>{"docs/a.md", "b.svg"}));
+}
+
+TEST(Links, LeadToFiles) {
+  const fs::path root = KOMPONO_SOURCE_DIR;
+  std::vector<fs::path> documents{root / "README.md", root / "CONTRIBUTING.md"};
+  for (const auto& entry : fs::directory_iterator(root / "docs")) {
+    if (entry.path().extension() == ".md") documents.push_back(entry.path());
+  }
+  for (const fs::path& document : documents) {
+    for (const std::string& target : LocalLinks(Bytes(document))) {
+      EXPECT_TRUE(fs::exists(document.parent_path() / target))
+          << document << " links to " << target;
+    }
+  }
 }
 
 }  // namespace
