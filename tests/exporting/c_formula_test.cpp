@@ -3,6 +3,7 @@
 // shipped machine.
 #include "shipped_machines.hpp"
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -21,14 +22,16 @@ TEST_P(CFormulas, CompiledGiveTheMachinesOwnDrives) {
   const kinematics::Machine machine = tests::LoadMachine(GetParam());
   const Parsed<MachineFormulas> formulas = DriveFormulas(machine, {.expand = false});
   ASSERT_TRUE(formulas.has_value()) << RenderAll(formulas.error(), {});
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
-                                       ("kompono_c_" + GetParam() + std::to_string(getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("kompono_c_{}_{}", GetParam(), getpid());
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "formula.c") << FormulaC(*formulas, machine);
   const std::string library = (folder / "formula.so").string();
-  const std::string command = std::string(KOMPONO_C_COMPILER) +
-                              " -std=c99 -Wall -Werror -O1 -shared -fPIC -o " + library + " " +
-                              (folder / "formula.c").string() + " -lm";
+  const std::string command =
+      fmt::format("{} -std=c99 -Wall -Werror -O1 -shared -fPIC -o {} {} -lm",
+                  KOMPONO_C_COMPILER,
+                  library,
+                  (folder / "formula.c").string());
   ASSERT_EQ(std::system(command.c_str()), 0) << FormulaC(*formulas, machine);
   void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_NE(handle, nullptr) << dlerror();
