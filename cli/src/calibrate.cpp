@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// kompono calibrate: the real geometry from measurements.
+#include "calibration_files.hpp"
+#include "files.hpp"
+#include "patterns.hpp"
+#include "session.hpp"
+#include "text.hpp"
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+#include "kompono/calibration/identification.hpp"
+#include "kompono/calibration/klipper_delta.hpp"
+#include "kompono/calibration/report.hpp"
+
+namespace kompono::cli {
+namespace {
+
+using calibration::CalibrationReport;
+using calibration::IdentifyOptions;
+using calibration::MeasurementSet;
+using kinematics::Machine;
+using nlohmann::ordered_json;
+
+constexpr const char* kExamples =
+    "  kompono calibrate machine.toml points.csv -o calibrated.toml\n"
+    "  kompono calibrate machine.toml points.csv --free 'drive.*,open_base' --held-out 0.3\n"
+    "  kompono calibrate machine.toml points.csv --prior 'drive.L1=0.05' --report report.json\n"
+    "  kompono calibrate delta.toml run.csv --published run.json        against Klipper's own fit";
+
+struct Options {
+  std::string file, out, published, report;
+  std::vector<std::string> measurements;
+  std::vector<std::string> free, lock, prior, bounds;
+  double held_out = 0.0;
+  std::uint64_t seed = 1;
+  double sigma_mm = IdentifyOptions{}.default_sigma_mm;
+  double sigma_deg = IdentifyOptions{}.default_sigma_rad * kDegPerRad;
+  int max_iterations = IdentifyOptions{}.max_iterations;
+  bool residuals = false;
+  bool force = false;
+};
+
+IdentifyOptions IdentifyOptionsOf(const Machine& machine,
+                                  const Options& options,
+                                  Diagnostics& problems) {
+  IdentifyOptions out;
+  out.free = SplitWords(options.free);
+  out.lock = SplitWords(options.lock);
+  if (!options.prior.empty())
+    out.prior_sigma = ReadPatternNumbers(Argument("--prior", options.prior), machine, problems);
+  if (!options.bounds.empty())
+    out.bounds = ReadPatternRanges(Argument("--bounds", options.bounds), machine, problems);
+  out.default_sigma_mm = options.sigma_mm;
+  out.default_sigma_rad = options.sigma_deg / kDegPerRad;
+  out.held_out_fraction = options.held_out;
+  out.seed = options.seed;
+  out.max_iterations = options.max_iterations;
+  return out;
+}
+
+/// Klipper's own words for what was found, beside what Klipper found itself.
+struct KlipperComparison {
+  calibration::KlipperGeometry nominal, identified, published;
+  double cost_nominal = 0.0, cost_identified = 0.0, cost_published = 0.0;
+};
+
+Parsed<KlipperComparison> Compare(const Machine& machine,
+                                  const MeasurementSet& set,
+                                  const CalibrationReport& report,
+                                  const IdentifyOptions& options,
+                                  const std::string& json_file) {
+  const Parsed<calibration::KlipperRun> run = calibration::ReadKlipperRun(json_file);
+  if (!run) return tl::unexpected(run.error());
+  const auto nominal = calibration::KlipperGeometryOf(machine, report.theta_before);
+  const auto identified = calibration::KlipperGeometryOf(machine, report.theta_after);
+  const auto published = calibration::ThetaOfKlipper(machine, run->published_fit);
+  for (const Diagnostics& failure : {nominal ? Diagnostics{} : nominal.error(),
+                                     identified ? Diagnostics{} : identified.error(),
+                                     published ? Diagnostics{} : published.error()}) {
+    if (!failure.empty()) return tl::unexpected(failure);
+  }
+  const auto cost = [&](const Eigen::VectorXd& theta) {
+    return calibration::WeightedSquares(machine, set, theta, options);
+  };
+  return KlipperComparison{.nominal = *nominal,
+                           .identified = *identified,
+                           .published = run->published_fit,
+                           .cost_nominal = cost(report.theta_before),
+                           .cost_identified = cost(report.theta_after),
+                           .cost_published = cost(*published)};
+}
+
+ordered_json GeometryJson(const calibration::KlipperGeometry& geometry) {
+  ordered_json out{{"delta_radius", geometry.delta_radius}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const char tower = "abc"[i];
+    out[fmt::format("angle_{}", tower)] = geometry.angle_deg[i];
+    out[fmt::format("arm_{}", tower)] = geometry.arm[i];
+    out[fmt::format("endstop_{}", tower)] = geometry.endstop[i];
+  }
+  return out;
+}
+
+ordered_json ComparisonJson(const KlipperComparison& comparison) {
+  return {{"nominal", GeometryJson(comparison.nominal)},
+          {"identified", GeometryJson(comparison.identified)},
+          {"published", GeometryJson(comparison.published)},
+          {"cost_nominal", comparison.cost_nominal},
+          {"cost_identified", comparison.cost_identified},
+          {"cost_published", comparison.cost_published}};
+}
+
+std::string ComparisonText(const KlipperComparison& comparison) {
+  return "\nin Klipper's numbers\n" +
+         calibration::CompareKlipper(
+             comparison.nominal, comparison.identified, comparison.published) +
+         fmt::format(
+             "  weighted sum of squares: nominal {:.9g}, identified {:.9g}, published {:.9g}\n",
+             comparison.cost_nominal,
+             comparison.cost_identified,
+             comparison.cost_published);
+}
+
+ExitCode ExitOf(const CalibrationReport& report) {
+  switch (report.status) {
+    case calibration::IdentifyStatus::kConverged:
+    case calibration::IdentifyStatus::kRankDeficient:
+      return ExitCode::kOk;
+    case calibration::IdentifyStatus::kIterationLimit:
+    case calibration::IdentifyStatus::kForwardFailed:
+      return ExitCode::kNoSolution;
+    case calibration::IdentifyStatus::kTooFewMeasurements:
+      return ExitCode::kBadInput;
+    case calibration::IdentifyStatus::kBadInput:
+      return ExitCodeOf(report.diagnostics);
+  }
+  return ExitCode::kInternal;
+}
+
+/// The files asked for; with what to leave if one cannot be written.
+std::optional<ExitCode> WriteFiles(Session& session,
+                                   const Machine& machine,
+                                   const CalibrationReport& report,
+                                   const MeasurementFiles& files,
+                                   const ordered_json& document,
+                                   const Options& options) {
+  if (!options.report.empty()) {
+    if (const auto failure = WriteFileAside(options.report, document.dump(2) + "\n", options.force))
+      return session.Refuse(*failure);
+    session.console.Say(options.report + " written");
+  }
+  if (options.out.empty() || !report.ok()) return std::nullopt;
+  const Parsed<std::string> layout =
+      calibration::CalibratedLayout(machine, session.registry(), report, SourceText(files));
+  if (!layout) return session.Refuse(layout.error());
+  if (const auto failure = WriteFileAside(options.out, *layout, options.force))
+    return session.Refuse(*failure);
+  session.console.Say(options.out + " written");
+  return std::nullopt;
+}
+
+ExitCode Identify(Session& session,
+                  const Machine& machine,
+                  const MeasurementFiles& files,
+                  const IdentifyOptions& identify,
+                  const Options& options) {
+  const CalibrationReport report = calibration::Identify(machine, files.set, identify);
+  ordered_json document = calibration::ToJson(report);
+  document["layout"] = options.file;
+  document["measurements"] = ordered_json::array();
+  for (const MeasurementFile& file : files.files)
+    document["measurements"].push_back({{"file", file.name}, {"sha256", file.sha256}});
+  if (!options.out.empty() && report.ok()) document["calibrated_layout"] = options.out;
+  std::optional<KlipperComparison> comparison;
+  if (!options.published.empty() && report.ok()) {
+    const auto compared = Compare(machine, files.set, report, identify, options.published);
+    if (!compared) return session.Refuse(compared.error());
+    comparison = *compared;
+    document["klipper"] = ComparisonJson(*comparison);
+  }
+  if (!session.json) {
+    session.console.Out(calibration::RenderText(report, {.residuals = options.residuals}));
+    if (comparison) session.console.Out(ComparisonText(*comparison));
+    session.console.Report(report.diagnostics);  // under --json they stand in the document
+  }
+  const auto failed = WriteFiles(session, machine, report, files, document, options);
+  if (failed) return *failed;
+  if (session.json) session.console.Json(std::move(document));
+  return ExitOf(report);
+}
+
+ExitCode Run(Session& session, const Options& options) {
+  for (const std::string& file : {options.out, options.report}) {
+    if (const auto exists = RefuseToOverwrite(file, options.force)) return session.Refuse(*exists);
+  }
+  ExitCode code = ExitCode::kOk;
+  const std::optional<Machine> machine = session.ReadMachine(options.file, code);
+  if (!machine) return code;
+  Diagnostics problems;
+  const IdentifyOptions identify = IdentifyOptionsOf(*machine, options, problems);
+  if (!problems.empty()) return session.Refuse(problems);
+  Diagnostics notes;
+  const Parsed<MeasurementFiles> files =
+      ReadMeasurementFiles(options.measurements, *machine, notes);
+  if (!files) {
+    notes.insert(notes.end(), files.error().begin(), files.error().end());
+    return session.Refuse(notes);
+  }
+  session.console.Report(notes);
+  return Identify(session, *machine, *files, identify, options);
+}
+
+void AddFitOptions(CLI::App& command, Options& options) {
+  const auto patterns =
+      [&command](
+          const char* name, std::vector<std::string>& value, const char* form, const char* text) {
+        command.add_option(name, value, text)->type_name(form)->allow_extra_args(false);
+      };
+  patterns("--free", options.free, "PATTERN,..", "What may change; else as the layout says");
+  patterns("--lock", options.lock, "PATTERN,..", "What may not change");
+  patterns(
+      "--prior", options.prior, "PATTERN=SIGMA,", "Expected deviation from nominal, mm or deg");
+  patterns("--bounds", options.bounds, "PATTERN=LO:HI,", "Limits, mm or deg");
+  command.add_option("--held-out", options.held_out, "Share of the rows kept to judge the fit (0)")
+      ->type_name("FRACTION")
+      ->check(CLI::Range(0.0, 0.99));
+  command.add_option("--seed", options.seed, "Of the choice of held-out rows (1)")->type_name("N");
+  command
+      .add_option(
+          "--sigma-mm", options.sigma_mm, "Deviation of lengths whose row gives none (0.01)")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option(
+          "--sigma-deg", options.sigma_deg, "Deviation of angles whose row gives none (0.00057)")
+      ->type_name("DEG")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--max-iterations", options.max_iterations, "Then it has not converged (100)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+}
+
+}  // namespace
+
+void AddCalibrate(CLI::App& root, Session& session) {
+  CLI::App* command =
+      session.Command(root, "calibrate", "Real geometry of a machine from measurements", kExamples);
+  const auto options = std::make_shared<Options>();
+  const auto file = [&](const char* name, std::string& value, const char* text) {
+    session.Hint(command->add_option(name, value, text)->type_name("FILE"), ValueHint::Kind::kFile);
+  };
+  session.Hint(
+      command->add_option("LAYOUT", options->file, "Layout with the nominal geometry")->required(),
+      ValueHint::Kind::kFile);
+  session.Hint(command
+                   ->add_option("MEASUREMENTS",
+                                options->measurements,
+                                "CSV files; runs of Klipper's deltas are known by their heading")
+                   ->required(),
+               ValueHint::Kind::kFile);
+  file("-o,--out", options->out, "Calibrated layout to write");
+  AddFitOptions(*command, *options);
+  file("--published", options->published, "A delta run's description: compare with Klipper's fit");
+  file("--report", options->report, "The whole report as JSON, for kompono catalog add --report");
+  command->add_flag("--residuals", options->residuals, "A line for every row");
+  command->add_flag("--force", options->force, "Replace files that exist");
+  session.OnRun(command, [&session, options] { return Run(session, *options); });
+}
+
+}  // namespace kompono::cli

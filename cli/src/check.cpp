@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// kompono check: every fault of every file. No plugin code runs, except for measurements, whose
+// units are judged by what the machine predicts.
+#include "codes.hpp"
+#include "files.hpp"
+#include "session.hpp"
+#include "text.hpp"
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "kompono/calibration/measurements.hpp"
+#include "kompono/plugin/description.hpp"
+
+namespace kompono::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kExamples =
+    "  kompono check machine.toml                             a layout\n"
+    "  kompono check layouts/machines/*.toml                  all of them, all faults in one run\n"
+    "  kompono check --layout machine.toml points.csv         measurements of that machine\n"
+    "  kompono check plugins/lambda/plugin.toml               a plugin's sidecar";
+
+struct Options {
+  std::vector<std::string> files;
+  std::string layout;
+};
+
+enum class Kind { kUnknown, kLayout, kMeasurements, kSidecar };
+
+std::string_view Name(Kind kind) {
+  switch (kind) {
+    case Kind::kLayout:
+      return "layout";
+    case Kind::kMeasurements:
+      return "measurements";
+    case Kind::kSidecar:
+      return "plugin";
+    case Kind::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+/// Whether a line of `text` begins with `key` and an equals sign.
+bool HasKey(std::string_view text, std::string_view key) {
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = Trimmed(text.substr(begin, end - begin));
+    if (line.starts_with(key) && Trimmed(line.substr(key.size())).starts_with('=')) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+Kind KindOf(const std::filesystem::path& file, std::string_view text) {
+  if (file.extension() == ".csv") return Kind::kMeasurements;
+  if (file.filename() == "plugin.toml") return Kind::kSidecar;
+  if (file.extension() == ".toml") return Kind::kLayout;
+  if (HasKey(text, "contract")) return Kind::kSidecar;
+  if (HasKey(text, "formula") || HasKey(text, "kompono")) return Kind::kLayout;
+  return Kind::kUnknown;
+}
+
+struct Verdict {
+  std::string file;
+  Kind kind = Kind::kUnknown;
+  Diagnostics diagnostics;
+  bool readable = true;
+  [[nodiscard]] bool ok() const { return !HasErrors(diagnostics); }
+};
+
+Diagnostic Problem(const CodeTitle& code,
+                   const std::string& file,
+                   std::string message,
+                   std::string help) {
+  return {.code = std::string(code.code),
+          .file = file,
+          .message = std::move(message),
+          .help = std::move(help)};
+}
+
+template <class T>
+void Take(const Parsed<T>& parsed, Diagnostics& diagnostics) {
+  if (!parsed) diagnostics.insert(diagnostics.end(), parsed.error().begin(), parsed.error().end());
+}
+
+Verdict Judge(Session& session,
+              const std::string& file,
+              const std::optional<kinematics::Machine>& machine) {
+  Verdict verdict{.file = file};
+  const Parsed<std::string> text = ReadWhole(file);
+  if (!text) {
+    verdict.readable = false;
+    verdict.diagnostics = text.error();
+    return verdict;
+  }
+  verdict.kind = KindOf(file, *text);
+  switch (verdict.kind) {
+    case Kind::kLayout:
+      Take(layout::ParseLayout(*text, file, session.registry(), &verdict.diagnostics),
+           verdict.diagnostics);
+      break;
+    case Kind::kSidecar:
+      Take(plugin::ParseSidecar(*text, file), verdict.diagnostics);
+      break;
+    case Kind::kMeasurements:
+      if (machine) {
+        Take(calibration::ParseMeasurements(*text, file, *machine, {}, &verdict.diagnostics),
+             verdict.diagnostics);
+      } else {
+        verdict.diagnostics.push_back(
+            Problem(codes::kNeedsLayout,
+                    file,
+                    "measurements can be judged only with the layout of the machine",
+                    "give it with --layout FILE"));
+      }
+      break;
+    case Kind::kUnknown:
+      verdict.diagnostics.push_back(Problem(codes::kUnknownFormat,
+                                            file,
+                                            "neither a layout nor measurements nor a plugin.toml",
+                                            "layouts are called *.toml, measurements *.csv"));
+      break;
+  }
+  return verdict;
+}
+
+void PrintText(Console& console, const std::vector<Verdict>& verdicts) {
+  Diagnostics all;
+  for (const Verdict& verdict : verdicts) {
+    const auto errors = static_cast<std::size_t>(
+        std::count_if(verdict.diagnostics.begin(), verdict.diagnostics.end(), [](const auto& d) {
+          return d.severity == Severity::kError;
+        }));
+    console.Out(fmt::format("{}: {}\n",
+                            verdict.file,
+                            errors == 0 ? console.Paint("ok", Hue::kGreen)
+                                        : console.Paint(Counted(errors, "error"), Hue::kRed)));
+    all.insert(all.end(), verdict.diagnostics.begin(), verdict.diagnostics.end());
+  }
+  console.Report(all);
+}
+
+void PrintJson(Console& console, const std::vector<Verdict>& verdicts) {
+  ordered_json files = ordered_json::array();
+  for (const Verdict& verdict : verdicts) {
+    files.push_back({{"file", verdict.file},
+                     {"kind", Name(verdict.kind)},
+                     {"ok", verdict.ok()},
+                     {"diagnostics", ToJson(verdict.diagnostics)}});
+  }
+  console.Json({{"files", std::move(files)}});
+}
+
+ExitCode Run(Session& session, const Options& options) {
+  std::optional<kinematics::Machine> machine;
+  if (!options.layout.empty()) {
+    ExitCode code = ExitCode::kOk;
+    machine = session.ReadMachine(options.layout, code);
+    if (!machine) return code;
+  }
+  std::vector<Verdict> verdicts;
+  for (const std::string& file : options.files) verdicts.push_back(Judge(session, file, machine));
+  if (session.json) {
+    PrintJson(session.console, verdicts);
+  } else {
+    PrintText(session.console, verdicts);
+  }
+  ExitCode code = ExitCode::kOk;
+  for (const Verdict& verdict : verdicts) {
+    if (!verdict.readable) return ExitCode::kInputOutput;
+    if (!verdict.ok()) code = ExitCode::kNegative;
+  }
+  return code;
+}
+
+}  // namespace
+
+void AddCheck(CLI::App& root, Session& session) {
+  CLI::App* command = session.Command(
+      root, "check", "Judge layouts, measurement files and plugin sidecars", kExamples);
+  const auto options = std::make_shared<Options>();
+  session.Hint(
+      command->add_option("FILE", options->files, "Layouts, measurements, plugin.toml")->required(),
+      ValueHint::Kind::kFile);
+  session.Hint(
+      command
+          ->add_option(
+              "--layout", options->layout, "Layout of the machine that the measurements are of")
+          ->type_name("FILE"),
+      ValueHint::Kind::kFile);
+  session.OnRun(command, [&session, options] { return Run(session, *options); });
+}
+
+}  // namespace kompono::cli

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// kompono describe: what a layout is made of and what it can move.
+#include "machine_sheet.hpp"
+#include "session.hpp"
+#include "text.hpp"
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+#include "kompono/analysis/mobility.hpp"
+#include "kompono/formula/equivalence.hpp"
+#include "kompono/formula/formula.hpp"
+
+namespace kompono::cli {
+namespace {
+
+using kinematics::Machine;
+using nlohmann::ordered_json;
+
+constexpr const char* kExamples =
+    "  kompono describe machine.toml            coordinates, drives, mobility, home\n"
+    "  kompono describe machine.toml --json     the same for programs";
+
+/// What is computed once and printed in two ways.
+struct Sheet {
+  const Machine& machine;
+  std::vector<analysis::BlockMobility> mobility;
+  std::vector<kinematics::Singularity> singularities;  ///< at home
+  kinematics::PoseNumbers home;
+};
+
+Sheet Describe(const Machine& machine) {
+  const Eigen::VectorXd z = machine.home();
+  const Eigen::VectorXd theta = machine.nominal();
+  return {.machine = machine,
+          .mobility = analysis::Mobility(machine),
+          .singularities = machine.Singularities(z, theta),
+          .home = kinematics::NumbersFromPose(machine.ToolPose(z, theta),
+                                              machine.layout().rotation_order)};
+}
+
+std::size_t Identifiable(const Machine& machine) {
+  const auto& parameters = machine.parameters();
+  return static_cast<std::size_t>(std::count_if(
+      parameters.begin(), parameters.end(), [](const auto& p) { return p.identifiable; }));
+}
+
+ordered_json PlacementJson(const layout::Placement& placement) {
+  const auto& r = placement.rotation_rad;
+  return {{"position_mm", placement.position_mm},
+          {"rotation_deg", {r[0] * kDegPerRad, r[1] * kDegPerRad, r[2] * kDegPerRad}}};
+}
+
+std::string PlacementText(const layout::Placement& placement) {
+  const auto& p = placement.position_mm;
+  const auto& r = placement.rotation_rad;
+  return fmt::format("position {} {} {} mm, rotation {} {} {} deg",
+                     Brief(p[0]),
+                     Brief(p[1]),
+                     Brief(p[2]),
+                     Brief(r[0] * kDegPerRad),
+                     Brief(r[1] * kDegPerRad),
+                     Brief(r[2] * kDegPerRad));
+}
+
+void AddMotionsJson(const Machine& machine, ordered_json& out) {
+  out["coordinates"] = ordered_json::array();
+  for (const kinematics::Coordinate& coordinate : machine.coordinates()) {
+    out["coordinates"].push_back(
+        {{"name", coordinate.name},
+         {"letter", std::string(1, coordinate.letter)},
+         {"unit", UnitOf(coordinate.rotary)},
+         {"range", RangeJson(coordinate.lower, coordinate.upper, coordinate.rotary)},
+         {"home", Outward(coordinate.home, coordinate.rotary)}});
+  }
+  out["drives"] = ordered_json::array();
+  for (const kinematics::Drive& drive : machine.drives()) {
+    ordered_json entry{{"name", drive.name},
+                       {"unit", UnitOf(drive.rotary)},
+                       {"range", RangeJson(drive.lower, drive.upper, drive.rotary)}};
+    if (drive.speed) entry["speed_per_s"] = Outward(*drive.speed, drive.rotary);
+    if (drive.acceleration)
+      entry["acceleration_per_s2"] = Outward(*drive.acceleration, drive.rotary);
+    if (drive.stiffness)
+      entry[drive.rotary ? "stiffness_N_mm_per_rad" : "stiffness_N_per_mm"] = *drive.stiffness;
+    out["drives"].push_back(std::move(entry));
+  }
+}
+
+ordered_json SheetJson(const Sheet& sheet) {
+  const layout::Layout& layout = sheet.machine.layout();
+  ordered_json out{{"name", layout.name},
+                   {"description", layout.description},
+                   {"formula", formula::Canonical(layout.formula)},
+                   {"explanation", ordered_json::array()},
+                   {"keys",
+                    {{"string", formula::StringKey(layout.formula)},
+                     {"distribution", formula::DistributionKey(layout.formula)},
+                     {"relative_motion", formula::RelativeMotionKey(layout.formula)}}}};
+  for (const formula::Explanation& line : formula::Explain(layout.formula)) {
+    out["explanation"].push_back(
+        {{"text", line.text}, {"meaning", line.meaning}, {"depth", line.depth}});
+  }
+  AddMotionsJson(sheet.machine, out);
+  out["mechanisms"] = ordered_json::array();
+  for (const analysis::BlockMobility& block : sheet.mobility) {
+    ordered_json entry{{"block", block.block},
+                       {"module", block.module},
+                       {"drives", block.drives},
+                       {"coordinates", block.coordinates},
+                       {"mobility", block.numeric}};
+    if (block.counted) {
+      entry["links"] = block.links;
+      entry["pairs"] = block.pairs;
+      entry["loops"] = block.loops;
+      entry["gruebler"] = block.gruebler;
+    }
+    entry["explanation"] = block.explanation;
+    out["mechanisms"].push_back(std::move(entry));
+  }
+  out["parameters"] = {{"count", sheet.machine.parameters().size()},
+                       {"identifiable", Identifiable(sheet.machine)}};
+  out["ends"] = ordered_json::array();
+  for (const layout::End& end : layout.ends) {
+    ordered_json entry{{"name", end.name}, {"module", end.module}, {"station", end.station}};
+    entry.update(PlacementJson(end.mount));
+    out["ends"].push_back(std::move(entry));
+  }
+  if (layout.formula.open_base) out["open_base"] = PlacementJson(layout.open_base);
+  const SingularitySummary summary = Summary(sheet.singularities);
+  out["home"] = {{"pose", PoseJson(sheet.home)},
+                 {"singularity", {{"type", summary.type}, {"margin", summary.margin}}}};
+  return out;
+}
+
+std::string MotionsText(const Machine& machine) {
+  TextTable coordinates({{"coordinate"}, {"range"}, {"home", true}, {""}});
+  for (const kinematics::Coordinate& c : machine.coordinates()) {
+    coordinates.Row({c.name,
+                     RangeText(c.lower, c.upper, c.rotary),
+                     Fixed(Outward(c.home, c.rotary)),
+                     std::string(UnitOf(c.rotary))});
+  }
+  TextTable drives({{"drive"}, {"range"}, {"speed", true}, {"acceleration", true}});
+  for (const kinematics::Drive& d : machine.drives()) {
+    const auto rate = [&d](const std::optional<double>& value, std::string_view per) {
+      return value
+                 ? fmt::format("{} {}/{}", Brief(Outward(*value, d.rotary)), UnitOf(d.rotary), per)
+                 : std::string("-");
+    };
+    drives.Row({d.name,
+                RangeText(d.lower, d.upper, d.rotary),
+                rate(d.speed, "s"),
+                rate(d.acceleration, "s²")});
+  }
+  return "\n" + coordinates.Render() + "\n" + drives.Render();
+}
+
+std::string MobilityText(const Sheet& sheet) {
+  if (sheet.mobility.empty()) return "";
+  TextTable table({{"mechanism"},
+                   {"module"},
+                   {"links", true},
+                   {"pairs", true},
+                   {"loops", true},
+                   {"Grübler", true},
+                   {"mobility", true}});
+  for (const analysis::BlockMobility& block : sheet.mobility) {
+    const auto counted = [&block](int number) {
+      return block.counted ? std::to_string(number) : std::string("-");
+    };
+    table.Row({block.block,
+               block.module,
+               counted(block.links),
+               counted(block.pairs),
+               counted(block.loops),
+               counted(block.gruebler),
+               std::to_string(block.numeric)});
+    if (!block.explanation.empty()) table.Line("      " + block.explanation);
+  }
+  return "\n" + table.Render();
+}
+
+void Print(Console& console, const Sheet& sheet) {
+  const layout::Layout& layout = sheet.machine.layout();
+  console.Out(console.Paint(layout.name.empty() ? layout.file.string() : layout.name, Hue::kBold) +
+              "\n");
+  if (!layout.description.empty()) console.Out(layout.description + "\n");
+  console.Out(fmt::format("\n{}\n", formula::Canonical(layout.formula)));
+  TextTable lines({{""}, {""}});
+  for (const formula::Explanation& line : formula::Explain(layout.formula)) {
+    lines.Row(
+        {std::string(static_cast<std::size_t>(2 * line.depth), ' ') + line.text, line.meaning});
+  }
+  console.Out(lines.Render() + MotionsText(sheet.machine) + MobilityText(sheet));
+  TextTable facts({{""}, {""}});
+  for (const layout::End& end : layout.ends) {
+    facts.Row(
+        {end.name,
+         fmt::format("{}{}{}",
+                     end.module.empty() ? "bare frame" : end.module,
+                     end.station.empty() ? "" : ", station " + end.station,
+                     end.mount == layout::Placement{} ? "" : ", " + PlacementText(end.mount))});
+  }
+  if (layout.formula.open_base) facts.Row({"open base", PlacementText(layout.open_base)});
+  facts.Row({"geometry",
+             fmt::format("{}, {} identifiable",
+                         Counted(sheet.machine.parameters().size(), "number"),
+                         Identifiable(sheet.machine))});
+  const SingularitySummary summary = Summary(sheet.singularities);
+  facts.Row(
+      {"at home",
+       fmt::format(
+           "{}, singularity margin {}", SingularityName(summary.type), Fixed(summary.margin))});
+  console.Out("\n" + facts.Render());
+  console.Out(fmt::format("\ntool pose at home, {}\n", OrderName(layout.rotation_order)) +
+              PoseText(sheet.home));
+}
+
+struct Options {
+  std::string file;
+};
+
+ExitCode Run(Session& session, const Options& options) {
+  ExitCode code = ExitCode::kOk;
+  const std::optional<Machine> machine = session.ReadMachine(options.file, code);
+  if (!machine) return code;
+  const Sheet sheet = Describe(*machine);
+  if (session.json) {
+    session.console.Json(SheetJson(sheet));
+  } else {
+    Print(session.console, sheet);
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void AddDescribe(CLI::App& root, Session& session) {
+  CLI::App* command = session.Command(
+      root, "describe", "Motions, drives, mobility and home of a layout", kExamples);
+  const auto options = std::make_shared<Options>();
+  session.Hint(command->add_option("FILE", options->file, "Layout")->required(),
+               ValueHint::Kind::kFile);
+  session.OnRun(command, [&session, options] { return Run(session, *options); });
+}
+
+}  // namespace kompono::cli

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.hpp"
+
+#include <cmath>
+
+namespace kompono::cli_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class Calibrate : public Program {
+ protected:
+  const std::string lambda_ = Machine("so_waterjet_lambda");
+
+  /// Measurements of a machine whose L1 and foundation are off.
+  void Measurements(const std::string& file, const std::string& sigma_mm = "0.005") {
+    const Outcome outcome = Run({"measure",
+                                 lambda_,
+                                 "--set",
+                                 "drive.L1=1200.8,open_base.x=501.5,open_base.y=599.25",
+                                 "--points",
+                                 "60",
+                                 "--sigma-mm",
+                                 sigma_mm,
+                                 "--seed",
+                                 "11",
+                                 "-o",
+                                 file});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+};
+
+TEST_F(Calibrate, FindsTheRealGeometryAndWritesALayout) {
+  Measurements("p.csv");
+  const Outcome outcome =
+      Run({"calibrate", lambda_, "p.csv", "-o", "out.toml", "--report", "report.json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("identification converged"));
+  EXPECT_THAT(outcome.out, HasSubstr("drive.L1"));
+  EXPECT_THAT(outcome.err, HasSubstr("out.toml written"));
+  EXPECT_EQ(Run({"check", "out.toml"}).code, 0);
+  EXPECT_THAT(Read("out.toml"), HasSubstr("[calibrated"));
+  EXPECT_THAT(Read("out.toml"), HasSubstr("p.csv (sha256 "));
+  EXPECT_THAT(Files(), ElementsAre("out.toml", "p.csv", "report.json"));
+
+  const nlohmann::json report = nlohmann::json::parse(Read("report.json"));
+  EXPECT_EQ(report["status"], "converged");
+  for (const nlohmann::json& parameter : report["parameters"]) {
+    const double sigma = parameter.value("sigma_mm", 0.0);
+    const auto expect = [&](const char* name, double truth) {
+      if (parameter["name"] == name) {
+        EXPECT_NEAR(parameter["after_mm"].get<double>(), truth, 5.0 * sigma) << name;
+      }
+    };
+    expect("drive.L1", 1200.8);
+    expect("open_base.x", 501.5);
+    expect("open_base.y", 599.25);
+  }
+  // The calibrated layout predicts the measurements: nothing is left to change.
+  const nlohmann::json again = Json({"calibrate", "out.toml", "p.csv"});
+  EXPECT_NEAR(again["cost_before"].get<double>(),
+              report["cost_after"].get<double>(),
+              1e-6 * report["cost_after"].get<double>());
+}
+
+TEST_F(Calibrate, JsonIsTheWholeReport) {
+  Measurements("p.csv");
+  const nlohmann::json report =
+      Json({"calibrate", lambda_, "p.csv", "--held-out", "0.3", "--seed", "5"});
+  EXPECT_EQ(report["rows_held_out"], 18);
+  EXPECT_EQ(report["measurements"][0]["file"], "p.csv");
+  EXPECT_EQ(report["measurements"][0]["sha256"].get<std::string>().size(), 64U);
+  EXPECT_TRUE(report["errors"].is_array());
+}
+
+TEST_F(Calibrate, FreeAndLockDecideWhatChanges) {
+  Measurements("p.csv");
+  const auto names = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"calibrate", lambda_, "p.csv"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> out;
+    for (const nlohmann::json& parameter : Json(arguments)["parameters"])
+      out.push_back(parameter["name"]);
+    return out;
+  };
+  EXPECT_THAT(names({"--free", "drive.L1,open_base.x"}), ElementsAre("drive.L1", "open_base.x"));
+  EXPECT_THAT(names({"--free", "drive.L1", "--free", "drive.L2"}),
+              ElementsAre("drive.L1", "drive.L2"));
+  EXPECT_THAT(names({"--free", "drive.L*", "--lock", "drive.L3"}),
+              ElementsAre("drive.L1", "drive.L2"));
+}
+
+TEST_F(Calibrate, PriorsAndBoundsHoldParameters) {
+  Measurements("p.csv");
+  const auto l1 = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"calibrate", lambda_, "p.csv", "--free", "drive.L1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Json(arguments)["parameters"][0];
+  };
+  const double free = std::abs(l1({})["change_mm"].get<double>());
+  EXPECT_LT(std::abs(l1({"--prior", "drive.L1=1e-6"})["change_mm"].get<double>()), 0.01 * free);
+  const nlohmann::json bounded = l1({"--bounds", "drive.L1=1199.99:1200.01"});
+  EXPECT_LE(std::abs(bounded["change_mm"].get<double>()), 0.0100001);
+  EXPECT_EQ(bounded["at_bound"], true);
+}
+
+TEST_F(Calibrate, ParametersThatNobodyHasAreUsageErrors) {
+  Measurements("p.csv");
+  const Outcome prior = Run({"calibrate", lambda_, "p.csv", "--prior", "drive.L9=1,drive.L1=x"});
+  EXPECT_EQ(prior.code, 2);
+  EXPECT_THAT(prior.err, HasSubstr("'drive.L9' names no number of the geometry"));
+  EXPECT_THAT(prior.err, HasSubstr("'x' is no number"));
+  const Outcome free = Run({"calibrate", lambda_, "p.csv", "--free", "drive.L9"});
+  EXPECT_EQ(free.code, 2) << free.err;
+  EXPECT_THAT(free.err, HasSubstr("drive.L9"));
+}
+
+TEST_F(Calibrate, WithoutConvergenceNothingIsWritten) {
+  Measurements("p.csv");
+  const Outcome outcome =
+      Run({"calibrate", lambda_, "p.csv", "-o", "out.toml", "--max-iterations", "1"});
+  EXPECT_EQ(outcome.code, 4) << outcome.out;
+  EXPECT_THAT(Files(), ElementsAre("p.csv"));
+}
+
+TEST_F(Calibrate, BadMeasurementsChangeNothing) {
+  Write("bad.csv", "x_mm,y_mm\n1,2\n");
+  const Outcome outcome = Run({"calibrate", lambda_, "bad.csv", "-o", "out.toml"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("bad.csv"));
+  EXPECT_THAT(Files(), ElementsAre("bad.csv"));
+  EXPECT_EQ(Run({"calibrate", lambda_, "nowhere.csv"}).code, 5);
+}
+
+TEST_F(Calibrate, ExistingFilesAreKeptAndNoWorkIsLostForThem) {
+  Measurements("p.csv");
+  Write("out.toml", "precious\n");
+  const Outcome refused = Run({"calibrate", lambda_, "p.csv", "-o", "out.toml"});
+  EXPECT_EQ(refused.code, 5);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_EQ(Read("out.toml"), "precious\n");
+  EXPECT_EQ(Run({"calibrate", lambda_, "p.csv", "-o", "out.toml", "--force"}).code, 0);
+  EXPECT_THAT(Read("out.toml"), HasSubstr("[calibrated"));
+}
+
+TEST_F(Calibrate, SeveralFilesAreOneFit) {
+  Measurements("p.csv");
+  ASSERT_EQ(
+      Run({"measure", lambda_, "--set", "drive.L1=1200.8", "--points", "10", "-o", "q.csv"}).code,
+      0);
+  const nlohmann::json report = Json({"calibrate", lambda_, "p.csv", "q.csv"});
+  EXPECT_EQ(report["rows_fitted"], 70);
+  EXPECT_EQ(report["measurements"].size(), 2U);
+}
+
+TEST_F(Calibrate, ResidualsOfEveryRowOnRequest) {
+  Measurements("p.csv");
+  const auto lines = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"calibrate", lambda_, "p.csv"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Lines(Run(arguments).out).size();
+  };
+  EXPECT_GE(lines({"--residuals"}), lines({}) + 60);
+}
+
+}  // namespace
+}  // namespace kompono::cli_test

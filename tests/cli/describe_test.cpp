@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.hpp"
+
+#include <filesystem>
+
+namespace kompono::cli_test {
+namespace {
+
+using testing::HasSubstr;
+
+using Describe = Program;
+
+TEST_F(Describe, TellsMotionsDrivesMobilityAndHome) {
+  const Outcome outcome = Run({"describe", Machine("so_waterjet_lambda")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* word : {"part_xy (XY):drive O|O Z P_z",
+                           "drive.X",
+                           "drive.q1",
+                           "lambda",
+                           "open base",
+                           "jet_head",
+                           "mobility",
+                           "singularity margin",
+                           "0 .. 150 mm"})
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+}
+
+TEST_F(Describe, JsonOfTheLambdaMachine) {
+  const nlohmann::json sheet = Json({"describe", Machine("so_waterjet_lambda")});
+  ASSERT_EQ(sheet["coordinates"].size(), 3U);
+  EXPECT_EQ(sheet["coordinates"][0]["name"], "drive.X");
+  EXPECT_EQ(sheet["coordinates"][0]["range"], nlohmann::json::parse("[0.0, 1000.0]"));
+  EXPECT_EQ(sheet["coordinates"][0]["home"], 500.0);
+  ASSERT_EQ(sheet["drives"].size(), 3U);
+  EXPECT_NEAR(sheet["drives"][0]["speed_per_s"].get<double>(), 40000.0 / 60.0, 1e-9);
+  ASSERT_EQ(sheet["mechanisms"].size(), 1U);
+  const nlohmann::json& lambda = sheet["mechanisms"][0];
+  EXPECT_EQ(lambda["mobility"], 2);
+  // 5 links and 5 pairs: one loop, 3 (5 - 1) - 2 * 5 = 2 motions in the plane.
+  EXPECT_EQ(lambda["links"], 5);
+  EXPECT_EQ(lambda["pairs"], 5);
+  EXPECT_EQ(lambda["loops"], 1);
+  EXPECT_EQ(lambda["gruebler"], 2);
+  EXPECT_EQ(sheet["open_base"]["position_mm"], nlohmann::json::parse("[500.0, 600.0, 134.0]"));
+  // Home is X 500, Y 600: the jet stands over the sheet's datum.
+  for (const char* letter : {"X", "Y", "Z", "A", "B", "C"})
+    EXPECT_NEAR(sheet["home"]["pose"][letter].get<double>(), 0.0, 1e-9) << letter;
+  EXPECT_EQ(sheet["home"]["singularity"]["type"], 0);
+  EXPECT_GT(sheet["home"]["singularity"]["margin"].get<double>(), 1e-3);
+}
+
+TEST_F(Describe, WorksForEveryMachineOfTheTree) {
+  for (const auto& entry : std::filesystem::directory_iterator(Source("layouts/machines"))) {
+    const nlohmann::json sheet = Json({"describe", entry.path().string()});
+    EXPECT_GT(sheet["drives"].size(), 0U) << entry.path();
+    EXPECT_GT(sheet["parameters"]["count"].get<int>(), 0) << entry.path();
+    EXPECT_EQ(Run({"describe", entry.path().string()}).code, 0);
+  }
+}
+
+}  // namespace
+}  // namespace kompono::cli_test
