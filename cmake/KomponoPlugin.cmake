@@ -16,7 +16,7 @@ function(kompono_plugin name)
   target_link_options(kompono_plugin_${name} PRIVATE -Wl,-z,defs "LINKER:--version-script=${shown}")
   set_target_properties(kompono_plugin_${name} PROPERTIES LINK_DEPENDS "${shown}")
   set_target_properties(kompono_plugin_${name} PROPERTIES
-    OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY "${folder}"
+    OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY "${folder}" INSTALL_RPATH "$ORIGIN/../../.."
     CXX_STANDARD 20 CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   configure_file(plugin.toml "${folder}/plugin.toml" COPYONLY)
   include(GNUInstallDirs)
