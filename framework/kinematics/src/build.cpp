@@ -12,7 +12,9 @@
 namespace kompono::kinematics {
 namespace {
 
-constexpr std::array<const char*, 6> kPlacementNames{
+/// Six numbers of a frame: "mount.x" … "mount.c"; an axis has "position.x" … "rotation.c".
+constexpr std::array<const char*, 6> kFrameNames{"x", "y", "z", "a", "b", "c"};
+constexpr std::array<const char*, 6> kAxisFrameNames{
     "position.x", "position.y", "position.z", "rotation.a", "rotation.b", "rotation.c"};
 
 Diagnostic Complaint(const layout::Layout& layout,
@@ -51,11 +53,14 @@ class ModelBuilder {
   }
 
  private:
-  int AddPlacement(const std::string& name, const layout::Placement& placement, bool identifiable) {
+  int AddPlacement(const std::string& name,
+                   const layout::Placement& placement,
+                   bool identifiable,
+                   const std::array<const char*, 6>& numbers = kFrameNames) {
     const int first = static_cast<int>(model_->parameters.size());
     for (std::size_t i = 0; i < 6; ++i) {
       model_->parameters.push_back(
-          {.name = name + "." + kPlacementNames[i],
+          {.name = name + "." + numbers[i],
            .nominal = i < 3 ? placement.position_mm[i] : placement.rotation_rad[i - 3],
            .tolerance = 0.0,
            .angle = i >= 3,
@@ -120,7 +125,7 @@ class ModelBuilder {
     const layout::Axis& axis = model_->layout.axes[index];
     AxisModel out;
     out.axis = static_cast<int>(index);
-    out.theta_frame = AddPlacement(axis.name, axis.frame, false);
+    out.theta_frame = AddPlacement(axis.name, axis.frame, false, kAxisFrameNames);
     out.theta_zero = AddZero(axis.name, axis.drive, IsRotaryLetter(axis.letter), false);
     model_->axes.push_back(out);
   }

@@ -252,8 +252,11 @@ class AutodiffMechanism : public plugin::Mechanism {
     const auto derivative = [rows](std::span<double> span, int columns) {
       return span.empty() || span.size() == rows * static_cast<std::size_t>(columns);
     };
-    return (is(state.coordinates.size(), Nx()) || !ReadsCoordinates(quantity)) &&
-           (is(state.drives.size(), Nq()) || !ReadsDrives(quantity)) &&
+    // What a quantity does not read may be left out, but not have a wrong length: all of it is
+    // loaded.
+    return (is(state.coordinates.size(), Nx()) ||
+            (!ReadsCoordinates(quantity) && state.coordinates.empty())) &&
+           (is(state.drives.size(), Nq()) || (!ReadsDrives(quantity) && state.drives.empty())) &&
            is(state.parameters.size(), Np()) && is(state.modes.size(), Nm()) &&
            out.values.size() == rows && derivative(out.by_coordinates, Nx()) &&
            derivative(out.by_drives, Nq()) && derivative(out.by_parameters, Np());
