@@ -100,14 +100,30 @@ std::optional<Argument::Interval> Argument::Range(const Assignment& assignment,
   return std::nullopt;
 }
 
+NameTable::NameTable(std::string what, std::vector<std::vector<std::string>> forms)
+    : what_(std::move(what)) {
+  for (std::vector<std::string>& form : forms) {
+    names_.push_back(form.front());
+    others_.emplace_back(form.begin() + 1, form.end());
+  }
+}
+
 std::vector<std::size_t> NameTable::Matches(std::string_view name) const {
   for (const bool whole : {true, false}) {
     std::vector<std::size_t> exact;
     std::vector<std::size_t> loose;
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      const std::string_view known = whole ? std::string_view(names_[i]) : ShortName(names_[i]);
-      if (known == name) exact.push_back(i);
-      if (SameLetters(known, name)) loose.push_back(i);
+      bool same = false;
+      bool alike = false;
+      const auto compare = [&](const std::string& form) {
+        const std::string_view known = whole ? std::string_view(form) : ShortName(form);
+        same = same || known == name;
+        alike = alike || SameLetters(known, name);
+      };
+      compare(names_[i]);
+      for (const std::string& other : others_[i]) compare(other);
+      if (same) exact.push_back(i);
+      if (alike) loose.push_back(i);
     }
     if (!exact.empty()) return exact;
     if (!loose.empty()) return loose;

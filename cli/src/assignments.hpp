@@ -61,7 +61,9 @@ class Argument {
 class NameTable {
  public:
   NameTable(std::string what, std::vector<std::string> names)
-      : what_(std::move(what)), names_(std::move(names)) {}
+      : what_(std::move(what)), names_(std::move(names)), others_(names_.size()) {}
+  /// The first of each thing's forms is its name, the others count as much.
+  NameTable(std::string what, std::vector<std::vector<std::string>> forms);
 
   /// The index, or a complaint (E0604, E0606) among `problems`; E0605 for one that `taken` has
   /// already.
@@ -75,6 +77,7 @@ class NameTable {
  private:
   std::string what_;  ///< "drive"
   std::vector<std::string> names_;
+  std::vector<std::vector<std::string>> others_;  ///< further forms of each
 };
 
 /// Numbers for the names of `table`, in its order; those not given are empty.

@@ -43,15 +43,18 @@ struct Options {
 };
 
 IdentifyOptions IdentifyOptionsOf(const Machine& machine,
+                                  const plugin::Registry& registry,
                                   const Options& options,
                                   Diagnostics& problems) {
   IdentifyOptions out;
   out.free = SplitWords(options.free);
   out.lock = SplitWords(options.lock);
+  const GeometryForms forms = FormsOf(machine, registry);
   if (!options.prior.empty())
-    out.prior_sigma = ReadPatternNumbers(Argument("--prior", options.prior), machine, problems);
+    out.prior_sigma =
+        ReadPatternNumbers(Argument("--prior", options.prior), machine, forms, problems);
   if (!options.bounds.empty())
-    out.bounds = ReadPatternRanges(Argument("--bounds", options.bounds), machine, problems);
+    out.bounds = ReadPatternRanges(Argument("--bounds", options.bounds), machine, forms, problems);
   out.default_sigma_mm = options.sigma_mm;
   out.default_sigma_rad = options.sigma_deg / kDegPerRad;
   out.held_out_fraction = options.held_out;
@@ -199,7 +202,8 @@ ExitCode Run(Session& session, const Options& options) {
   const std::optional<Machine> machine = session.ReadMachine(options.file, code);
   if (!machine) return code;
   Diagnostics problems;
-  const IdentifyOptions identify = IdentifyOptionsOf(*machine, options, problems);
+  const IdentifyOptions identify =
+      IdentifyOptionsOf(*machine, session.registry(), options, problems);
   if (!problems.empty()) return session.Refuse(problems);
   Diagnostics notes;
   const Parsed<MeasurementFiles> files =

@@ -91,7 +91,8 @@ void Console::Report(const Diagnostics& diagnostics) {
 void Console::Json(nlohmann::ordered_json document) {
   if (!told_.empty()) {
     nlohmann::ordered_json& list = document["diagnostics"];
-    for (const nlohmann::json& diagnostic : ToJson(told_)) list.push_back(nlohmann::ordered_json(diagnostic));
+    for (const nlohmann::json& diagnostic : ToJson(told_))
+      list.push_back(nlohmann::ordered_json(diagnostic));
     told_.clear();
   }
   // Texts from files may hold bytes that are no UTF-8; a replacement mark is better than no answer.

@@ -49,23 +49,25 @@ MeasurementKind KindOf(const std::string& word) {
 }
 
 /// θ of the machine that is measured.
-Eigen::VectorXd TrueGeometry(const Machine& truth, const Options& options, Diagnostics& problems) {
+Eigen::VectorXd TrueGeometry(const Machine& truth,
+                             const plugin::Registry& registry,
+                             const Options& options,
+                             Diagnostics& problems) {
   Eigen::VectorXd theta = options.as_made
                               ? calibration::ManufacturedGeometry(truth, *options.as_made)
                               : truth.nominal();
+  const GeometryForms forms = FormsOf(truth, registry);
   if (!options.set.empty()) {
-    std::vector<std::string> names;
-    for (const kinematics::Parameter& parameter : truth.parameters())
-      names.push_back(parameter.name);
     const auto numbers = ReadNumbers(
-        Argument("--set", options.set), NameTable("number of the geometry", names), problems);
-    for (std::size_t i = 0; i < names.size(); ++i) {
+        Argument("--set", options.set), NameTable("number of the geometry", forms), problems);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i])
         theta[static_cast<Eigen::Index>(i)] = Inward(*numbers[i], truth.parameters()[i].angle);
     }
   }
   if (!options.change.empty()) {
-    const auto changes = ReadPatternNumbers(Argument("--change", options.change), truth, problems);
+    const auto changes =
+        ReadPatternNumbers(Argument("--change", options.change), truth, forms, problems);
     const Parsed<Eigen::VectorXd> changed = calibration::ChangedGeometry(truth, changes);
     if (changed) {
       theta += *changed - truth.nominal();
@@ -130,7 +132,7 @@ ExitCode Run(Session& session, const Options& options) {
   if (!options.truth.empty()) truth = session.ReadMachine(options.truth, code);
   if (!truth) return code;
   Diagnostics problems;
-  const Eigen::VectorXd theta = TrueGeometry(*truth, options, problems);
+  const Eigen::VectorXd theta = TrueGeometry(*truth, session.registry(), options, problems);
   const calibration::SimulateOptions simulation = SimulationOf(*nominal, options, problems);
   if (!problems.empty()) return session.Refuse(problems);
   const Parsed<calibration::MeasurementSet> set =

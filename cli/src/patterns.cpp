@@ -16,14 +16,17 @@ namespace {
 std::optional<bool> NamesAngles(const Argument& argument,
                                 const Assignment& assignment,
                                 const kinematics::Machine& machine,
+                                const GeometryForms& forms,
                                 Diagnostics& problems) {
   std::size_t lengths = 0;
   std::size_t angles = 0;
   std::vector<std::string> names;
-  for (const kinematics::Parameter& parameter : machine.parameters()) {
-    names.push_back(parameter.name);
-    if (layout::MatchesPattern(assignment.name, parameter.name))
-      (parameter.angle ? angles : lengths) += 1;
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    names.push_back(forms[i].front());
+    const bool named = std::any_of(forms[i].begin(), forms[i].end(), [&](const auto& form) {
+      return layout::MatchesPattern(assignment.name, form);
+    });
+    if (named) (machine.parameters()[i].angle ? angles : lengths) += 1;
   }
   const auto complain = [&](const CodeTitle& code, std::string message, std::string help) {
     problems.push_back(argument.Complaint(
@@ -59,12 +62,29 @@ void ComplainIfRepeated(const Argument& argument,
 
 }  // namespace
 
+GeometryForms FormsOf(const kinematics::Machine& machine, const plugin::Registry& registry) {
+  std::map<std::string, std::vector<std::string>> known;  // by each form
+  for (const layout::Number& number : layout::NumbersOf(machine.layout(), registry)) {
+    std::vector<std::string> forms{number.name};
+    forms.insert(forms.end(), number.other_names.begin(), number.other_names.end());
+    for (const std::string& form : forms) known[form] = forms;
+  }
+  GeometryForms out;
+  for (const kinematics::Parameter& parameter : machine.parameters()) {
+    const auto found = known.find(parameter.name);
+    // What a preset has fixed is no number of the layout.
+    out.push_back(found == known.end() ? std::vector<std::string>{parameter.name} : found->second);
+  }
+  return out;
+}
+
 std::map<std::string, double> ReadPatternNumbers(const Argument& argument,
                                                  const kinematics::Machine& machine,
+                                                 const GeometryForms& forms,
                                                  Diagnostics& problems) {
   std::map<std::string, double> out;
   for (const Assignment& assignment : argument.Split(problems)) {
-    const std::optional<bool> angle = NamesAngles(argument, assignment, machine, problems);
+    const std::optional<bool> angle = NamesAngles(argument, assignment, machine, forms, problems);
     const std::optional<double> number = argument.Number(assignment, problems);
     if (!angle || !number) continue;
     const bool inserted = out.emplace(assignment.name, Inward(*number, *angle)).second;
@@ -75,10 +95,11 @@ std::map<std::string, double> ReadPatternNumbers(const Argument& argument,
 
 std::map<std::string, std::array<double, 2>> ReadPatternRanges(const Argument& argument,
                                                                const kinematics::Machine& machine,
+                                                               const GeometryForms& forms,
                                                                Diagnostics& problems) {
   std::map<std::string, std::array<double, 2>> out;
   for (const Assignment& assignment : argument.Split(problems)) {
-    const std::optional<bool> angle = NamesAngles(argument, assignment, machine, problems);
+    const std::optional<bool> angle = NamesAngles(argument, assignment, machine, forms, problems);
     const std::optional<Argument::Interval> range = argument.Range(assignment, problems);
     if (!angle || !range) continue;
     const std::array<double, 2> limits{Inward(range->lower, *angle), Inward(range->upper, *angle)};

@@ -67,12 +67,22 @@ TEST(NameTable, WholeNamesCountBeforeShortOnesAndLetterCaseLast) {
   EXPECT_THAT(table.Matches("front"), ElementsAre());
 }
 
+TEST(NameTable, FurtherFormsCountAsMuch) {
+  const NameTable table("number",
+                        std::vector<std::vector<std::string>>{{"base.x", "base.position.x"},
+                                                              {"Z.position.x", "Z.x"}});
+  EXPECT_THAT(table.Matches("base.position.x"), ElementsAre(0));
+  EXPECT_THAT(table.Matches("Z.x"), ElementsAre(1));
+  EXPECT_THAT(table.Matches("position.x"), ElementsAre(0, 1));
+  EXPECT_THAT(table.names(), ElementsAre("base.x", "Z.position.x"));
+}
+
 TEST(ReadNumbers, ReportsEveryKindOfFaultAtOnce) {
   Diagnostics problems;
   const NameTable table("drive", {"front.q1", "back.q1", "Z"});
   const auto numbers =
       ReadNumbers(Argument("--drives", {"q1=1,Z=2,Z=3,W=4,front.q1=x"}), table, problems);
-  EXPECT_EQ(numbers[2], 3.0);
+  EXPECT_EQ(numbers[2], 2.0);
   std::vector<std::string> codes;
   for (const Diagnostic& problem : problems) codes.push_back(problem.code);
   EXPECT_THAT(codes, ElementsAre("E0606", "E0605", "E0604", "E0608"));

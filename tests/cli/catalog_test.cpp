@@ -40,7 +40,7 @@ TEST_F(Catalog, AddTakesEveryMachineOfTheTree) {
 }
 
 TEST_F(Catalog, OneBadFileAddsNothing) {
-  Write("bad.toml", "kompono = 1\nformula = 'X Q O tool'\n");
+  Write("bad.toml", "kompono = 1\nformula = 'X Q7_v O tool'\n");
   const Outcome outcome = Run({"catalog", "add", "machines.db", mill_, "bad.toml", "no.toml"});
   EXPECT_EQ(outcome.code, 5);
   EXPECT_THAT(outcome.err, HasSubstr("bad.toml:2:"));

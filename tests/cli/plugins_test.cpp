@@ -84,7 +84,8 @@ TEST_F(Plugins, DisabledOnesStayInTheListWithTheReason) {
   EXPECT_THAT(outcome.out, HasSubstr("disabled"));
   EXPECT_THAT(outcome.out, HasSubstr("[E02"));
   bool seen = false;
-  for (const nlohmann::json& plugin : Json({"plugins", "--plugin-dir", folder})["plugins"]) {
+  const nlohmann::json list = Json({"plugins", "--plugin-dir", folder})["plugins"];
+  for (const nlohmann::json& plugin : list) {
     if (plugin["enabled"] == true) continue;
     seen = true;
     EXPECT_GE(plugin["reasons"].size(), 1U);
@@ -106,8 +107,8 @@ summary = 'Nothing.'
 stations = ['s']
 )");
   Write("plugins/bad/libbad.so", "this is no library");
-  for (const nlohmann::json& plugin :
-       Json({"plugins", "--load", "--plugin-dir", folder})["plugins"]) {
+  const nlohmann::json list = Json({"plugins", "--load", "--plugin-dir", folder})["plugins"];
+  for (const nlohmann::json& plugin : list) {
     if (plugin["id"] != "org.example.bad") continue;
     EXPECT_EQ(plugin["enabled"], false) << plugin;
     EXPECT_GE(plugin["reasons"].size(), 1U);
