@@ -73,6 +73,12 @@ RankAnalysis AnalyzeRank(const Eigen::MatrixXd& J,
     if (!held[static_cast<std::size_t>(i)]) active.push_back(i);
   }
   const auto count = static_cast<Eigen::Index>(active.size());
+  if (count == 0) {  // every parameter stands at a bound
+    analysis.null_unit.setZero(n, 0);
+    analysis.gauge.setZero(n, 0);
+    analysis.covariance.setZero(n, n);
+    return analysis;
+  }
   const double largest_column = n > 0 ? analysis.column_norm.maxCoeff() : 0.0;
   Eigen::VectorXd norm(count);
   Eigen::MatrixXd unit(J.rows(), count);
@@ -87,7 +93,7 @@ RankAnalysis AnalyzeRank(const Eigen::MatrixXd& J,
       unit.col(k) = J.col(i) / norm[k];
     }
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Reduced(unit), Eigen::ComputeFullV);
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(Reduced(unit), Eigen::ComputeFullV);
   const Eigen::VectorXd& values = svd.singularValues();
   while (analysis.rank < values.size() && values[analysis.rank] > threshold * values[0]) {
     ++analysis.rank;

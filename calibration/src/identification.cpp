@@ -199,9 +199,9 @@ class Identification {
     if (!fit.converged) {
       report_.status = IdentifyStatus::kIterationLimit;
       Refuse(codes::kNotConverged.code,
-             fmt::format("the solver did not converge in {} iterations ({})",
-                         report_.iterations,
-                         report_.solver_message));
+             fmt::format("the solver did not converge in {} iterations", report_.iterations));
+      report_.diagnostics.back().help =
+          "allow more iterations, lock parameters, or give a layout nearer to the machine";
     } else if (report_.dof <= 0 && analysis.gauge.cols() > 0) {
       report_.status = IdentifyStatus::kTooFewMeasurements;
       Refuse(codes::kTooFew.code,

@@ -128,7 +128,7 @@ Fit SolveLeastSquares(std::vector<RowModel*> rows,
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   fit.converged = summary.termination_type == ceres::CONVERGENCE;
   fit.message = summary.message;
-  fit.iterations = summary.num_successful_steps + summary.num_unsuccessful_steps;
+  fit.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   fit.cost_before = summary.initial_cost;
   fit.cost_after = summary.final_cost;
   return fit;

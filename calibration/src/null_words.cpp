@@ -19,7 +19,9 @@ using kinematics::Parameter;
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kMoves = 1e-6;  ///< of what the parts alone would move
+constexpr double kMoves = 1e-6;   ///< of what the parts alone would move
+constexpr double kSlight = 0.01;  ///< parts below this share of the largest are not worth words
+constexpr double kRadianLength_mm = 100.0;  ///< what a turn by a radian counts beside a motion
 constexpr std::size_t kMostNamed = 6;
 constexpr std::size_t kMostRows = 12;  ///< where further measurements are tried
 
@@ -119,7 +121,7 @@ std::string Words(const std::vector<Part>& parts) {
   if (parts.size() == 2 && parts[0].angle == parts[1].angle && parts[0].count == 1 &&
       parts[1].count == 1) {
     const double ratio = parts[1].value / parts[0].value;
-    const double most = 1e-5;
+    const double most = kSlight;
     if (std::abs(ratio + 1.0) < most || std::abs(ratio - 1.0) < most) {
       return fmt::format("{} and {} can only be told apart up to their {}",
                          parts[0].name,
@@ -193,9 +195,10 @@ NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
     direction.parts.emplace_back(machine_.parameters()[static_cast<std::size_t>(i)].name,
                                  change[i]);
   }
-  const std::vector<Part> parts = Grouped(machine_.parameters(), change);
+  const Eigen::VectorXd essential = Essential(change);
+  const std::vector<Part> parts = Grouped(machine_.parameters(), essential);
   direction.words = Words(parts);
-  const bool single = direction.parts.size() == 1;
+  const bool single = (essential.array() != 0.0).count() == 1;
   const std::string measure = Remedy(change);
   if (!measure.empty()) {
     direction.remedy = (single ? "lock it, or " : "lock one of them, or ") + measure;
@@ -205,6 +208,21 @@ NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
     direction.remedy = "lock one of them; no measurement of this tool can tell them apart";
   }
   return direction;
+}
+
+Eigen::VectorXd NullWords::Essential(const Eigen::VectorXd& change) const {
+  Eigen::VectorXd effect = Eigen::VectorXd::Zero(change.size());
+  for (const MeasuredPose& pose : poses_) {
+    for (Eigen::Index i = 0; i < change.size(); ++i) {
+      if (change[i] == 0.0) continue;
+      const Eigen::Matrix<double, 6, 1> part = pose.by_parameters.col(i) * change[i];
+      effect[i] =
+          std::max(effect[i], part.head<3>().norm() + kRadianLength_mm * part.tail<3>().norm());
+    }
+  }
+  const double largest = effect.maxCoeff();
+  if (largest == 0.0) return change;
+  return (effect.array() < kSlight * largest).select(0.0, change);
 }
 
 std::string NullWords::Remedy(const Eigen::VectorXd& change) const {

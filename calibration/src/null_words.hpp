@@ -37,6 +37,8 @@ class NullWords {
     [[nodiscard]] bool Any() const { return Moves(0) || Moves(1) || Moves(2) || Turns(); }
   };
 
+  /// The change without parts that hardly move the tool beside the others.
+  [[nodiscard]] Eigen::VectorXd Essential(const Eigen::VectorXd& change) const;
   [[nodiscard]] std::string Remedy(const Eigen::VectorXd& change) const;
   [[nodiscard]] Motion MotionAt(const std::vector<kinematics::MeasuredPose>& poses,
                                 const Eigen::VectorXd& change) const;

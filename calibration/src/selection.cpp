@@ -14,14 +14,19 @@
 namespace kompono::calibration {
 namespace {
 
-/// Other forms of a parameter's name that layouts accept: "Z.x" of "Z.position.x", "tool.length" of
-/// "P_z.length" if the table is called [tool].
+/// Other forms of a parameter's name that layouts accept: "open_base.position.x" of "open_base.x"
+/// and the reverse, "tool.length" of "P_z.length" if the table is called [tool].
 std::vector<std::string> NamesOf(const layout::Layout& layout, const std::string& name) {
   std::vector<std::string> names{name};
-  for (const std::string_view key : {".position.", ".rotation."}) {
-    const std::size_t at = name.rfind(key);
-    if (at == std::string::npos || at + key.size() + 1 != name.size()) continue;
-    names.push_back(name.substr(0, at) + "." + name.back());
+  const std::size_t dot = name.rfind('.');
+  const std::size_t letter =
+      dot + 2 == name.size() ? std::string_view("xyzabc").find(name.back()) : std::string::npos;
+  if (letter != std::string::npos) {
+    const std::string_view key = letter < 3 ? ".position" : ".rotation";
+    const std::string owner = name.substr(0, dot);
+    names.push_back(owner.ends_with(key)
+                        ? owner.substr(0, owner.size() - key.size()) + name.substr(dot)
+                        : owner + std::string(key) + name.substr(dot));
   }
   for (const layout::End& end : layout.ends) {
     if (end.table == end.name || !name.starts_with(end.name + ".")) continue;

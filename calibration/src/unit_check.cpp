@@ -19,6 +19,7 @@ constexpr std::size_t kMostRows = 60;   ///< enough for a median
 constexpr double kSuspicious_mm = 1.0;  ///< smaller errors are not a matter of units
 constexpr double kSuspicious_rad = 0.05;
 constexpr double kGain = 100.0;
+constexpr double kNoPose_mm = 1000.0;  ///< what readings without a pose count as
 
 struct MedianError {
   double mm = std::numeric_limits<double>::infinity();
@@ -132,6 +133,7 @@ class UnitCheck {
 
  private:
   bool DoubtLengths(const std::vector<Sample>& samples, double before_mm) {
+    const double to_beat_mm = std::isfinite(before_mm) ? before_mm : kNoPose_mm;
     constexpr std::array<Suspect, 4> kSuspects{Suspect{false, 1e3, "metres"},
                                                Suspect{true, 1e3, "metres"},
                                                Suspect{false, 1e-3, "micrometres"},
@@ -141,7 +143,7 @@ class UnitCheck {
       const MedianError after = suspect.readings
                                     ? ErrorOf(Predict(machine_, set_, suspect.factor), 1.0, 1.0)
                                     : ErrorOf(samples, suspect.factor, 1.0);
-      if (!std::isfinite(after.mm) || after.mm * kGain > before_mm) continue;
+      if (!std::isfinite(after.mm) || after.mm * kGain > to_beat_mm) continue;
       const Role lengths = columns_.Has(Role::kPosition) ? Role::kPosition : Role::kValue;
       Complain(suspect.readings ? Role::kReading : lengths,
                fmt::format("it looks as if the {} are in {}: the median error against the nominal "

@@ -3,6 +3,8 @@
 #include "machines.hpp"
 #include "residuals.hpp"
 
+#include <random>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -363,6 +365,41 @@ TEST(MeasurementFiles, InOtherUnitsAreReadWhenTheCheckIsOff) {
                         Mill(),
                         {.check_units = false});
   EXPECT_TRUE(set);
+}
+
+TEST(MeasurementFiles, WithRandomDamageAreReadOrRefusedButNeverCrash) {
+  const std::string good =
+      "# by hand\nkind,value_mm,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,sigma_mm,held_out,X,Y,Z,C_deg,"
+      "second.X,second.Y,second.Z,second.C_rad\n"
+      "height,30,,,,,,,0.01,,10,20,30,0,,,,\n"
+      "distance,50,,,,,,,,yes,0,0,0,0,30,40,0,0\n"
+      "pose,,1,2,3,0,0,-90,,1,1,2,3,90,,,,\n";
+  const std::string bytes = ",;\"#\n\r\t-+.eE0189xnaif_\xD0\x80\0";
+  for (unsigned seed = 1; seed <= 3000; ++seed) {
+    std::mt19937 random(seed);
+    std::string text = good;
+    for (int i = 0; i < 4; ++i) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 3) {
+        case 0:
+          text[at] = bytes[random() % bytes.size()];
+          break;
+        case 1:
+          text.erase(at, 1 + random() % 20);
+          break;
+        default:
+          text.insert(at, 1, bytes[random() % bytes.size()]);
+          break;
+      }
+    }
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Parsed<MeasurementSet> set = ParseMeasurements(text, "m.csv", Mill());
+    if (set) continue;
+    ASSERT_TRUE(HasErrors(set.error()));
+    for (const Diagnostic& d : set.error()) {
+      ASSERT_FALSE(d.message.empty());
+    }
+  }
 }
 
 TEST(KlipperFiles, AreRefusedWithAllTheirFaults) {
