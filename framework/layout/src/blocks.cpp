@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // [block.<name>] and what the formula asks of it.
-#include "keys.hpp"
 #include "reader.hpp"
 #include "shape.hpp"
 #include <fmt/format.h>
@@ -21,12 +20,6 @@ std::string NamesOf(const std::vector<formula::Axis>& axes) {
 
 std::string_view KindName(plugin::ModuleKind kind) {
   return kind == plugin::ModuleKind::kMechanism ? "mechanism" : "unit";
-}
-
-std::string KnownDrives(const plugin::ModuleDescription& module, std::string_view word) {
-  std::vector<std::string> names;
-  for (const auto& drive : module.drives) names.push_back(drive.name);
-  return DidYouMean(word, names);
 }
 
 }  // namespace
@@ -108,15 +101,14 @@ void LayoutReader::ReadBlockDrives(BlockDraft& draft) {
                                                   : ReadDrive(*table, drive.rotary, units_));
   }
   if (given == nullptr) return;
+  std::vector<std::string> names;
+  for (const plugin::DriveDescription& drive : draft.module->drives) names.push_back(drive.name);
   for (const auto& [key, node] : *given) {
-    const bool known = std::any_of(draft.module->drives.begin(),
-                                   draft.module->drives.end(),
-                                   [&key](const auto& drive) { return drive.name == key.str(); });
-    if (known) continue;
+    if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
     complaints_.Error(codes::kUnknownDrive,
                       complaints_.Span(key.source()),
                       fmt::format("'{}' has no drive '{}'", draft.module->id, key.str()),
-                      KnownDrives(*draft.module, key.str()));
+                      DidYouMean(key.str(), names));
   }
 }
 

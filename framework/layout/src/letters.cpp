@@ -23,7 +23,7 @@ Matrix3<double> RotationOf(const Placement& mount) {
 class KindFit {
  public:
   KindFit(bool rotary, std::string_view local, const std::vector<formula::Axis>& wanted)
-      : rotary_(rotary), local_(local), wanted_(wanted) {
+      : local_(local), wanted_(wanted) {
     for (std::size_t i = 0; i < local.size(); ++i) {
       if (IsRotaryLetter(local[i]) == rotary) mine_.push_back(i);
     }
@@ -71,7 +71,6 @@ class KindFit {
     return {.formula_letter = axis.letter, .axis = axis.Name(), .sign = sign};
   }
 
-  bool rotary_;
   std::string_view local_;
   const std::vector<formula::Axis>& wanted_;
   std::vector<std::size_t> mine_, theirs_;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "kompono/diagnostics/suggestion.hpp"
-#include "kompono/geometry/pose.hpp"
 
 namespace kompono::layout {
 namespace {

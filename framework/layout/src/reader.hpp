@@ -8,7 +8,6 @@
 #include "units.hpp"
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>

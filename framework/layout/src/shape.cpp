@@ -247,10 +247,11 @@ std::optional<double> JudgeNumber(const toml::node& node,
 }
 
 std::optional<double> NumberOf(const toml::node* node) {
-  if (node == nullptr || !node->is_number()) return std::nullopt;
-  const double value = *node->value<double>();
-  if (!std::isfinite(value)) return std::nullopt;
-  return value;
+  if (node == nullptr) return std::nullopt;
+  // node->value<double>() would refuse integers that a double can only round.
+  if (const auto integer = node->value_exact<std::int64_t>()) return static_cast<double>(*integer);
+  const auto value = node->value_exact<double>();
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::optional<double> NumberAt(const toml::table& table, std::string_view key) {
