@@ -150,6 +150,7 @@ std::optional<std::size_t> NameTable::Find(const Argument& argument,
   }
   if (matches.size() > 1) {
     std::vector<std::string> meant;
+    meant.reserve(matches.size());
     for (const std::size_t i : matches) meant.push_back(names_[i]);
     return complain(codes::kAmbiguousName,
                     fmt::format("'{}' may be any of several {}s", assignment.name, what_),

@@ -22,7 +22,7 @@ void AddOptions(const CLI::App* app, const Session& session, CompletionCommand& 
   for (const CLI::Option* option : app->get_options()) {
     if (option->get_positional() || option->get_group().empty()) continue;
     CompletionOption out{.text = option->get_description(),
-                         .takes_value = option->get_type_size() != 0,
+                         .takes_value = option->get_items_expected_max() != 0,
                          .hint = session.HintOf(option)};
     for (const std::string& name : option->get_snames()) out.names.push_back("-" + name);
     for (const std::string& name : option->get_lnames()) out.names.push_back("--" + name);

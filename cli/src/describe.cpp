@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "kompono/analysis/mobility.hpp"
@@ -29,16 +30,31 @@ struct Sheet {
   std::vector<analysis::BlockMobility> mobility;
   std::vector<kinematics::Singularity> singularities;  ///< at home
   kinematics::PoseNumbers home;
+  std::map<std::string, std::vector<std::string>> capabilities;  ///< and what gives them
 };
 
-Sheet Describe(const Machine& machine) {
+std::map<std::string, std::vector<std::string>> CapabilitiesOf(const layout::Layout& layout,
+                                                               const plugin::Registry& registry) {
+  std::map<std::string, std::vector<std::string>> out;
+  const auto add = [&](const std::string& name, const std::string& module) {
+    const plugin::ModuleDescription* description = registry.Find(module);
+    if (description == nullptr) return;
+    for (const std::string& capability : description->capabilities) out[capability].push_back(name);
+  };
+  for (const layout::Block& block : layout.blocks) add(block.name, block.module);
+  for (const layout::End& end : layout.ends) add(end.name, end.module);
+  return out;
+}
+
+Sheet Describe(const Machine& machine, const plugin::Registry& registry) {
   const Eigen::VectorXd z = machine.home();
   const Eigen::VectorXd theta = machine.nominal();
   return {.machine = machine,
           .mobility = analysis::Mobility(machine),
           .singularities = machine.Singularities(z, theta),
           .home = kinematics::NumbersFromPose(machine.ToolPose(z, theta),
-                                              machine.layout().rotation_order)};
+                                              machine.layout().rotation_order),
+          .capabilities = CapabilitiesOf(machine.layout(), registry)};
 }
 
 std::size_t Identifiable(const Machine& machine) {
@@ -129,6 +145,7 @@ ordered_json SheetJson(const Sheet& sheet) {
     out["ends"].push_back(std::move(entry));
   }
   if (layout.formula.open_base) out["open_base"] = PlacementJson(layout.open_base);
+  out["capabilities"] = sheet.capabilities;
   const SingularitySummary summary = Summary(sheet.singularities);
   out["home"] = {{"pose", PoseJson(sheet.home)},
                  {"singularity", {{"type", summary.type}, {"margin", summary.margin}}}};
@@ -205,6 +222,8 @@ void Print(Console& console, const Sheet& sheet) {
                      end.mount == layout::Placement{} ? "" : ", " + PlacementText(end.mount))});
   }
   if (layout.formula.open_base) facts.Row({"open base", PlacementText(layout.open_base)});
+  for (const auto& [name, given_by] : sheet.capabilities)
+    facts.Row({"can do", fmt::format("{} ({})", name, Joined(given_by))});
   facts.Row({"geometry",
              fmt::format("{}, {} identifiable",
                          Counted(sheet.machine.parameters().size(), "number"),
@@ -227,7 +246,7 @@ ExitCode Run(Session& session, const Options& options) {
   ExitCode code = ExitCode::kOk;
   const std::optional<Machine> machine = session.ReadMachine(options.file, code);
   if (!machine) return code;
-  const Sheet sheet = Describe(*machine);
+  const Sheet sheet = Describe(*machine, session.registry());
   if (session.json) {
     session.console.Json(SheetJson(sheet));
   } else {

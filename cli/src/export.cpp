@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// kompono export: a layout's control formulas for other programs.
+// kompono export: a layout's control formulas and its drawing, for other programs.
 #include "assignments.hpp"
 #include "files.hpp"
 #include "session.hpp"
@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "kompono/exporting/drawing.hpp"
 #include "kompono/exporting/formulas.hpp"
 
 namespace kompono::cli {
@@ -19,7 +20,8 @@ constexpr const char* kExamples =
     "  kompono export machine.toml --to formula                     what each drive must read\n"
     "  kompono export machine.toml --to latex --digits 4            for a paper\n"
     "  kompono export machine.toml --to c -o kinematics.c           for a controller\n"
-    "  kompono export machine.toml --to formula --drive struts.q1   one drive only";
+    "  kompono export machine.toml --to formula --drive struts.q1   one drive only\n"
+    "  kompono export machine.toml --to svg -o machine.svg          a drawing of it at home";
 
 struct Options {
   std::string file, to, out;
@@ -57,36 +59,50 @@ std::string Rendered(const exporting::MachineFormulas& formulas,
   return exporting::FormulaText(formulas, options);
 }
 
+/// What an export gives: its text and, for formulas, their parts as JSON.
+struct Exported {
+  std::string text;
+  nlohmann::json formulas;
+};
+
+Parsed<Exported> Export(const Machine& machine, const Options& options) {
+  if (options.to == "svg")
+    return Exported{exporting::DrawSvg(machine, machine.home(), machine.nominal()), nullptr};
+  Diagnostics problems;
+  const exporting::FormulaOptions wanted{.digits = options.digits,
+                                         .expand = !options.no_expand,
+                                         .drives = WantedDrives(machine, options, problems)};
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  const Parsed<exporting::MachineFormulas> formulas = exporting::DriveFormulas(machine, wanted);
+  if (!formulas) return tl::unexpected(formulas.error());
+  return Exported{Rendered(*formulas, machine, options.to, wanted),
+                  exporting::FormulaJson(*formulas, wanted)};
+}
+
 ExitCode Run(Session& session, const Options& options) {
   if (const auto exists = RefuseToOverwrite(options.out, options.force))
     return session.Refuse(*exists);
   ExitCode code = ExitCode::kOk;
   const std::optional<Machine> machine = session.ReadMachine(options.file, code);
   if (!machine) return code;
-  Diagnostics problems;
-  const exporting::FormulaOptions wanted{.digits = options.digits,
-                                         .expand = !options.no_expand,
-                                         .drives = WantedDrives(*machine, options, problems)};
-  if (!problems.empty()) return session.Refuse(problems);
-  const Parsed<exporting::MachineFormulas> formulas = exporting::DriveFormulas(*machine, wanted);
-  if (!formulas) return session.Refuse(formulas.error());
-  const std::string text = Rendered(*formulas, *machine, options.to, wanted);
+  const Parsed<Exported> exported = Export(*machine, options);
+  if (!exported) return session.Refuse(exported.error());
   if (!options.out.empty()) {
-    if (const auto failure = WriteFileAside(options.out, text, options.force))
+    if (const auto failure = WriteFileAside(options.out, exported->text, options.force))
       return session.Refuse(*failure);
     session.console.Say(options.out + " written");
   }
   if (session.json) {
     nlohmann::ordered_json out{{"format", options.to}};
-    out["formulas"] = exporting::FormulaJson(*formulas, wanted);
+    if (!exported->formulas.is_null()) out["formulas"] = exported->formulas;
     if (options.out.empty()) {
-      out["text"] = text;
+      out["text"] = exported->text;
     } else {
       out["file"] = options.out;
     }
     session.console.Json(std::move(out));
   } else if (options.out.empty()) {
-    session.console.Out(text);
+    session.console.Out(exported->text);
   }
   return ExitCode::kOk;
 }
@@ -94,15 +110,15 @@ ExitCode Run(Session& session, const Options& options) {
 }  // namespace
 
 void AddExport(CLI::App& root, Session& session) {
-  CLI::App* command =
-      session.Command(root, "export", "Control formulas of a layout for other programs", kExamples);
+  CLI::App* command = session.Command(
+      root, "export", "Control formulas or a drawing of a layout for other programs", kExamples);
   const auto options = std::make_shared<Options>();
   session.Hint(command->add_option("FILE", options->file, "Layout")->required(),
                ValueHint::Kind::kFile);
-  session.Choices(command->add_option("--to", options->to, "formula, latex or c")
+  session.Choices(command->add_option("--to", options->to, "formula, latex, c or svg")
                       ->type_name("FORMAT")
                       ->required(),
-                  {"formula", "latex", "c"});
+                  {"formula", "latex", "c", "svg"});
   command->add_option("--digits", options->digits, "Significant digits in formula and latex (6)")
       ->type_name("N")
       ->check(CLI::Range(1, 17));

@@ -44,7 +44,7 @@ std::string Entry(const std::string& left, const std::string& text) {
 std::string OptionName(const CLI::Option* option) {
   std::string name = option->get_name(false, true);
   std::replace(name.begin(), name.end(), ',', ' ');
-  if (option->get_type_size() == 0) return name;
+  if (option->get_items_expected_max() == 0) return name;  // a flag
   const std::string value = option->get_type_name();
   return fmt::format("{} {}", name, value.empty() ? "TEXT" : value);
 }
@@ -62,10 +62,11 @@ std::string Usage(const CLI::App* app) {
   return usage + " [options]\n";
 }
 
-std::string Options(const CLI::App* app, bool positional) {
+std::string Options(const CLI::App* app, bool positional, bool with_help) {
   std::string out;
   for (const CLI::Option* option : app->get_options()) {
     if (option->get_positional() != positional || option->get_group().empty()) continue;
+    if (option == app->get_help_ptr() && !with_help) continue;
     out += positional ? Entry(option->get_name(true), option->get_description())
                       : Entry(OptionName(option), option->get_description());
   }
@@ -108,10 +109,10 @@ std::string HelpFormatter::make_help(const CLI::App* app,
   std::string out = "Examples:\n" + app->get_footer() + "\n\n";
   out += app->get_description() + "\n\n" + Usage(app);
   out += Block("Commands", Commands(app));
-  out += Block("Arguments", Options(app, true));
-  out += Block("Options", Options(app, false));
+  out += Block("Arguments", Options(app, true, false));
+  out += Block("Options", Options(app, false, root == app));
   if (root != app) {
-    out += Block("Options of every command", Options(root, false));
+    out += Block("Options of every command", Options(root, false, true));
   }
   out += Block("Exit status", ExitCodes());
   return out;

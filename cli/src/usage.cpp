@@ -26,6 +26,8 @@ std::vector<std::string> OptionNames(const CLI::App* app) {
   std::vector<std::string> names;
   for (; app != nullptr; app = app->get_parent()) {
     for (const CLI::Option* option : app->get_options()) {
+      // --help stands on every level.
+      if (option == app->get_help_ptr() && app->get_parent() != nullptr) continue;
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
       for (const std::string& name : option->get_snames()) names.push_back("-" + name);
     }
@@ -72,7 +74,11 @@ Diagnostics UsageProblems(const CLI::App& root, const CLI::ParseError* error) {
     break;
   }
   if (out.empty() && error != nullptr) {
-    out.push_back(Problem(codes::kUsage, error->what(), ""));
+    std::string message = error->what();
+    // CLI11 says "--pose: 1 required NAME=.., missing".
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(error) != nullptr)
+      message = message.substr(0, message.find(':')) + " needs a value";
+    out.push_back(Problem(codes::kUsage, message, ""));
   }
   if (out.empty() && !CommandNames(*command).empty()) {
     out.push_back(Problem(codes::kUsage,

@@ -114,6 +114,7 @@ TEST_F(Catalog, ShowAndExportGiveBackWhatWasAdded) {
   const Outcome exported = Run({"catalog", "export", "machines.db", hash.substr(0, 8)});
   EXPECT_EQ(exported.code, 0) << exported.err;
   EXPECT_EQ(exported.out, Shell("cat '" + mill_ + "'").out);
+  EXPECT_EQ(Json({"catalog", "export", "machines.db", hash})["text"], exported.out);
   EXPECT_EQ(Run({"catalog", "export", "machines.db", "1", "-o", "out.toml"}).code, 0);
   EXPECT_EQ(Run({"check", "out.toml"}).code, 0);
   EXPECT_EQ(Run({"catalog", "export", "machines.db", "1", "-o", "out.toml"}).code, 5);

@@ -50,6 +50,8 @@ TEST_F(Completion, BashCompletesValues) {
   EXPECT_THAT(Offers("kompono solve machine.toml --poses my"), ElementsAre("my file.csv"));
   EXPECT_THAT(Offers("kompono solve machine.toml --rotation ''"), ElementsAre("xyz", "zyx"));
   EXPECT_THAT(Offers("kompono export machine.toml --to l"), ElementsAre("latex"));
+  EXPECT_THAT(Offers("kompono --json so"), ElementsAre("solve"));
+  EXPECT_THAT(Offers("kompono solve --json ma"), ElementsAre("machine.toml"));
   EXPECT_THAT(Offers("kompono completion z"), ElementsAre("zsh"));
   EXPECT_THAT(Offers("kompono plugins lam"), ElementsAre("lambda"));
   EXPECT_THAT(Offers("kompono measure machine.toml --points ''"), ElementsAre(""));

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every command has in common: streams, exit codes, colours, versions, speed.
 #include "program.hpp"
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 
 namespace kompono::cli_test {
 namespace {
@@ -65,6 +67,12 @@ TEST_F(General, MissingArgumentsAndCommandsAreNamed) {
   const Outcome command = Run({"catalog"});
   EXPECT_EQ(command.code, 2);
   EXPECT_THAT(command.err, HasSubstr("kompono catalog needs a command"));
+}
+
+TEST_F(General, AnOptionWithoutItsValueSaysSo) {
+  const Outcome outcome = Run({"solve", "m.toml", "--pose"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--pose needs a value"));
 }
 
 TEST_F(General, WordsThatAreNoChoiceAreRefusedWithTheChoices) {
@@ -140,6 +148,16 @@ TEST_F(General, AFullDiskUnderStdoutIsInputOutput) {
   EXPECT_THAT(outcome.err, HasSubstr("cannot write to standard output"));
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve all addresses
+TEST_F(General, WhatNobodyThoughtOfAsksForAReport) {
+  const Outcome outcome =
+      Shell("head -c 300000000 /dev/zero | (ulimit -v 200000; \"$K\" formula -)");
+  EXPECT_EQ(outcome.code, 70);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("please report"));
+}
+#endif
+
 TEST_F(General, PluginFoldersAreSearchedInTheOrderGiven) {
   // Without plugins a layout with mechanisms cannot be read.
   std::filesystem::copy_file(KOMPONO_PROGRAM, folder() / "work" / "kompono");
@@ -153,22 +171,35 @@ TEST_F(General, PluginFoldersAreSearchedInTheOrderGiven) {
   EXPECT_EQ(Shell(command).code, 0);
 }
 
+double ChildrenCpu_ms() {
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  const auto ms = [](const timeval& time) {
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
+  };
+  return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
 TEST_F(General, ColdStartOfSolveIsQuick) {
   const std::vector<std::string> arguments{
       "solve", Machine("so_waterjet_lambda"), "--pose", "X=10,Y=20,Z=5"};
-  std::vector<double> times_ms;
-  for (int i = 0; i < 7; ++i) {
+  double wall_ms = 1e9;
+  double cpu_ms = 1e9;
+  for (int i = 0; i < 9; ++i) {
+    const double cpu_before = ChildrenCpu_ms();
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_EQ(Run(arguments).code, 0);
     const std::chrono::duration<double, std::milli> taken =
         std::chrono::steady_clock::now() - begin;
-    times_ms.push_back(taken.count());
+    wall_ms = std::min(wall_ms, taken.count());
+    cpu_ms = std::min(cpu_ms, ChildrenCpu_ms() - cpu_before);
   }
-  const double best_ms = *std::min_element(times_ms.begin(), times_ms.end());
-  RecordProperty("best_ms", std::to_string(best_ms));
-  std::printf("kompono solve, whole process: best of 7 %.1f ms\n", best_ms);
+  std::printf("kompono solve, whole process, best of 9: %.1f ms, of which %.1f ms computing\n",
+              wall_ms,
+              cpu_ms);
 #ifdef KOMPONO_RELEASE
-  EXPECT_LT(best_ms, 50.0);
+  EXPECT_LT(cpu_ms, 50.0);
+  EXPECT_LT(wall_ms, 2.0 * 50.0);  // other programs may want the processor too
 #endif
 }
 

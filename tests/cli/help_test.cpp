@@ -56,6 +56,14 @@ TEST_F(Help, OfEveryCommandBeginsWithExamplesOfThatCommand) {
   }
 }
 
+TEST_F(Help, FlagsTakeNoValueAndHelpStandsOnce) {
+  const std::string help = Run({"calibrate", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("\n  --residuals             A line"));
+  EXPECT_THAT(help, HasSubstr("\n  --json                  Data"));
+  EXPECT_THAT(help, HasSubstr("\n  -o --out FILE           Calibrated"));
+  EXPECT_EQ(help.find("-h --help"), help.rfind("-h --help"));
+}
+
 TEST_F(Help, ListsTheExitCodes) {
   const Outcome outcome = Run({"solve", "-h"});
   for (const char* code : {"  0  ", "  1  ", "  2  ", "  3  ", "  4  ", "  5  ", "  70 "})
