@@ -87,6 +87,7 @@ ExitCode AddRecords(Session& session, const std::string& db, const std::vector<N
   std::optional<Store> store = Open(session, db, OpenMode::kCreate, code);
   if (!store) return code;
   std::vector<catalog::LayoutRecord> records;
+  records.reserve(named.size());
   for (const Named& entry : named) records.push_back(entry.record);
   const auto results = store->AddAll(records);
   if (!results) return session.Refuse(results.error());
@@ -282,7 +283,8 @@ ExitCode Stats(Session& session, const Options& options) {
     const auto& counts = name == "modules"   ? statistics->modules
                          : name == "plugins" ? statistics->plugins
                                              : statistics->programs;
-    for (const auto& [what, count] : counts) table.Row({name + ": " + what, std::to_string(count)});
+    for (const auto& [what, count] : counts)
+      table.Row({fmt::format("{}: {}", name, what), std::to_string(count)});
   }
   session.console.Out(table.Render());
   return ExitCode::kOk;

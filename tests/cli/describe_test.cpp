@@ -49,6 +49,31 @@ TEST_F(Describe, JsonOfTheLambdaMachine) {
   EXPECT_GT(sheet["home"]["singularity"]["margin"].get<double>(), 1e-3);
 }
 
+TEST_F(Describe, CapabilitiesOfModulesAreTheMachines) {
+  // A preset of another plugin's unit; the catalog keeps the versions of both.
+  std::filesystem::create_directories(folder() / "work/plugins/cutter");
+  Write("plugins/cutter/plugin.toml",
+        "kompono = 1\nid = 'org.example.cutter'\nversion = '2.5.0'\ncontract = '1.0'\n"
+        "[[preset]]\nid = 'cutter'\ntitle = 'Cutter'\nof = 'tool'\ncapabilities = ['milling']\n");
+  Write("mill.toml",
+        "kompono = 1\nname = 'Mill'\nformula = 'X O Z tool'\n"
+        "[axis.X]\nrange = [0, 1]\n[axis.Z]\nrange = [0, 1]\n[tool]\nmodule = 'cutter'\n");
+  Set("KOMPONO_PLUGIN_PATH", (folder() / "work/plugins").string());
+  EXPECT_EQ(Json({"describe", "mill.toml"})["capabilities"]["milling"],
+            nlohmann::json::array({"tool"}));
+  EXPECT_THAT(Run({"describe", "mill.toml"}).out, HasSubstr("milling (tool)"));
+  ASSERT_EQ(Run({"catalog", "add", "machines.db", "mill.toml"}).code, 0);
+  const nlohmann::json found =
+      Json({"catalog",
+            "query",
+            "machines.db",
+            "id in (select layout_id from capabilities where name = 'milling')",
+            "--columns",
+            "name, plugins"});
+  ASSERT_EQ(found["rows"].size(), 1U);
+  EXPECT_EQ(found["rows"][0]["plugins"], "org.example.cutter 2.5.0, org.kompono.units 0.1.0");
+}
+
 TEST_F(Describe, WorksForEveryMachineOfTheTree) {
   for (const auto& entry : std::filesystem::directory_iterator(Source("layouts/machines"))) {
     const nlohmann::json sheet = Json({"describe", entry.path().string()});
