@@ -3,6 +3,8 @@
 
 #include <SQLiteCpp/Exception.h>
 
+#include <string>
+
 namespace kompono::catalog {
 
 Command::Command(SQLite::Database& db, std::string_view sql) : db_(db.getHandle()) {
@@ -63,9 +65,10 @@ int Command::Step() {
   next_ = 1;
   const int code = sqlite3_step(statement_.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) {
-    const SQLite::Exception failure(db_, code);
+    const std::string message = sqlite3_errmsg(db_);
+    const int extended = sqlite3_extended_errcode(db_);
     sqlite3_reset(statement_.get());
-    throw failure;
+    throw SQLite::Exception(message, extended);
   }
   return code;
 }

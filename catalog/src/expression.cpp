@@ -109,7 +109,7 @@ class Scanner {
   }
 
   template <class Belongs>
-  std::size_t Length(Belongs belongs) const {
+  [[nodiscard]] std::size_t Length(Belongs belongs) const {
     return static_cast<std::size_t>(
         std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), belongs) -
         (text_.begin() + static_cast<std::ptrdiff_t>(at_)));

@@ -35,7 +35,7 @@ auto Guarded(const std::string& file, Work&& work) -> decltype(work()) {
   try {
     return std::forward<Work>(work)();
   } catch (const SQLite::Exception& e) {
-    return tl::make_unexpected(Diagnostics{FromSqlite(e.getExtendedErrorCode(), e.what(), file)});
+    return tl::make_unexpected(Diagnostics{FromSqlite(e.getErrorCode(), e.what(), file)});
   }
 }
 

@@ -163,7 +163,9 @@ int Watch::Callback(void* self) {
 
 Reader::Reader(const std::string& uri, std::string file, std::chrono::milliseconds busy_timeout)
     : file_(std::move(file)),
-      db_(uri, SQLite::OPEN_READONLY | SQLite::OPEN_URI, static_cast<int>(busy_timeout.count())) {
+      db_(uri,
+          SQLite::OPEN_READONLY | SQLite::OPEN_URI | SQLite::OPEN_NOMUTEX,
+          static_cast<int>(busy_timeout.count())) {
   Configure(db_);
   db_.exec("PRAGMA query_only = ON");
   db_.exec("PRAGMA temp_store = MEMORY");

@@ -205,6 +205,7 @@ Parsed<std::int64_t> FindLayout(SQLite::Database& db,
   }
   if (found.size() > 1) {
     std::vector<std::string> choices;
+    choices.reserve(found.size());
     for (const Candidate& candidate : found) {
       choices.push_back(
           fmt::format("id {} with hash {}", candidate.id, candidate.hash.substr(0, 12)));

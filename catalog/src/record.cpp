@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <tuple>
@@ -28,8 +29,12 @@ class Bytes {
     if (value) Add(*value);
   }
   void AddNumber(std::uint64_t value) {
-    for (unsigned shift = 0; shift < 64; shift += 8)
-      bytes_ += static_cast<char>(value >> shift & 0xFFU);
+    std::array<char, 8> little{};
+    for (char& byte : little) {
+      byte = static_cast<char>(value & 0xFFU);
+      value >>= 8U;
+    }
+    bytes_.append(little.data(), little.size());
   }
   [[nodiscard]] Sha256 Digest() const { return Sha256Of(bytes_); }
 
@@ -177,6 +182,16 @@ void CheckProvenance(const Provenance& provenance, Judge& judge) {
   });
 }
 
+/// LF line ends: a checkout on another system is the same layout.
+std::string WithoutCarriageReturns(std::string_view toml) {
+  std::string text;
+  text.reserve(toml.size());
+  for (std::size_t i = 0; i < toml.size(); ++i) {
+    if (toml[i] != '\r' || i + 1 == toml.size() || toml[i + 1] != '\n') text += toml[i];
+  }
+  return text;
+}
+
 nlohmann::ordered_json NumberOrNull(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
@@ -235,18 +250,6 @@ nlohmann::ordered_json ResultsJson(const LayoutRecord& record) {
 
 }  // namespace
 
-std::string CanonicalContent(const LayoutRecord& record) {
-  if (!record.content.empty()) return record.content;
-  std::string text;
-  text.reserve(record.toml.size());
-  for (std::size_t i = 0; i < record.toml.size(); ++i) {
-    const bool windows =
-        record.toml[i] == '\r' && i + 1 < record.toml.size() && record.toml[i + 1] == '\n';
-    if (!windows) text += record.toml[i];
-  }
-  return text;
-}
-
 Sha256 ContentDigest(const LayoutRecord& record) {
   Bytes bytes;
   bytes.Add("kompono layout 1");
@@ -269,7 +272,11 @@ Sha256 ContentDigest(const LayoutRecord& record) {
     bytes.Add(parameter->value);
     bytes.Add(parameter->unit);
   }
-  bytes.Add(CanonicalContent(record));
+  if (!record.content.empty() || record.toml.find('\r') == std::string::npos) {
+    bytes.Add(record.content.empty() ? record.toml : record.content);
+  } else {
+    bytes.Add(WithoutCarriageReturns(record.toml));
+  }
   return bytes.Digest();
 }
 

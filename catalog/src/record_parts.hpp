@@ -10,9 +10,6 @@
 
 namespace kompono::catalog {
 
-/// What stands for the layout file in the hash: `content`, or `toml` with LF line ends.
-[[nodiscard]] std::string CanonicalContent(const LayoutRecord& record);
-
 [[nodiscard]] Sha256 ContentDigest(const LayoutRecord& record);
 [[nodiscard]] Sha256 ContentDigest(const Calibration& calibration);
 

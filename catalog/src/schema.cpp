@@ -32,7 +32,7 @@ std::filesystem::path BackupName(const std::filesystem::path& path, int version)
 /// meanwhile; the copy is read over a connection of its own because SQLite copies from none that is
 /// writing.
 std::filesystem::path CopyAside(const std::filesystem::path& path, int version) {
-  const std::filesystem::path name = BackupName(path, version);
+  std::filesystem::path name = BackupName(path, version);
   std::filesystem::path part = name;
   part += ".part";
   std::filesystem::remove(part);
@@ -106,7 +106,7 @@ void Configure(SQLite::Database& db) {
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
   db.exec("PRAGMA foreign_keys = ON");
   db.exec("PRAGMA cell_size_check = ON");
-  db.exec("PRAGMA cache_size = -65536");
+  db.exec("PRAGMA cache_size = -65536");  // KiB
   db.exec("PRAGMA synchronous = NORMAL");
 }
 

@@ -58,6 +58,7 @@ Parsed<std::vector<AddResult>> Store::Impl::AddAll(std::span<const LayoutRecord>
     const std::size_t step = chunk == 0 ? std::max<std::size_t>(1, records.size()) : chunk;
     for (std::size_t begin = 0; begin < records.size(); begin += step) {
       SQLite::Transaction transaction(*db, SQLite::TransactionBehavior::IMMEDIATE);
+      writer->Begin();
       for (const LayoutRecord& record :
            records.subspan(begin, std::min(step, records.size() - begin))) {
         results.push_back(writer->Add(record));

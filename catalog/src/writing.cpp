@@ -4,6 +4,7 @@
 #include "record_parts.hpp"
 #include "schema.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include <sqlite3.h>
@@ -11,6 +12,22 @@
 #include "kompono/catalog/hash.hpp"
 
 namespace kompono::catalog {
+namespace {
+
+bool Same(const Provenance& a, const Provenance& b) {
+  return a.source_sha256 == b.source_sha256 && a.source_path == b.source_path &&
+         a.program_version == b.program_version &&
+         std::equal(a.plugins.begin(),
+                    a.plugins.end(),
+                    b.plugins.begin(),
+                    b.plugins.end(),
+                    [](const PluginVersion& x, const PluginVersion& y) {
+                      return x.id == y.id && x.version == y.version;
+                    });
+}
+
+}  // namespace
+
 Dictionary::Entry Dictionary::Find(std::span<const std::string_view> columns) {
   key_.clear();
   for (const std::string_view column : columns) {
@@ -61,6 +78,9 @@ Writer::Writer(SQLite::Database& db)
               "VALUES(?, ?, ?, ?, ?, ?, ?) ON CONFLICT(content_hash) DO NOTHING"),
       find_layout_(db, "SELECT id FROM layout WHERE content_hash = ?"),
       text_(db, "INSERT INTO layout_text VALUES(?, ?, ?)"),
+      refresh_derived_(db,
+                       "UPDATE layout SET coordinates = ?2, drives = ?3 WHERE id = ?1 "
+                       "AND (coordinates <> ?2 OR drives <> ?3)"),
       refresh_text_(db, "UPDATE layout_text SET toml = ?2 WHERE layout_id = ?1 AND toml IS NOT ?2"),
       refresh_provenance_(db, "UPDATE layout SET provenance_id = ?2 WHERE id = ?1"),
       block_(db, "INSERT INTO layout_block VALUES(?, ?, ?, ?)"),
@@ -111,6 +131,7 @@ std::int64_t Writer::FormulaOf(const LayoutRecord& record) {
 
 std::int64_t Writer::ProvenanceOf(const LayoutRecord& record) {
   const Provenance& provenance = record.provenance;
+  if (run_ && !provenance.source_sha256.empty() && Same(*run_, provenance)) return run_id_;
   const std::optional<Sha256> given = Sha256FromHex(provenance.source_sha256);
   const std::string source = Hex(given ? *given : Sha256Of(record.toml));
   const std::string plugins = PluginText(provenance);
@@ -121,6 +142,8 @@ std::int64_t Writer::ProvenanceOf(const LayoutRecord& record) {
                                                     : provenance.program_version,
                                                 plugins};
   const Dictionary::Entry entry = provenances_.Find(columns);
+  run_ = provenance;
+  run_id_ = entry.id;
   if (!entry.written) return entry.id;
   for (const PluginVersion& plugin : provenance.plugins) {
     plugin_.Integer(entry.id).Text(plugin.id).Text(plugin.version).Run();
@@ -128,13 +151,16 @@ std::int64_t Writer::ProvenanceOf(const LayoutRecord& record) {
   return entry.id;
 }
 
+void Writer::Begin() {
+  now_ = Now();
+}
+
 AddResult Writer::Add(const LayoutRecord& record) {
   const Sha256 digest = ContentDigest(record);
   const std::int64_t provenance = ProvenanceOf(record);
   const std::int64_t formula = FormulaOf(record);
-  const std::string now = Now();
   layout_.Digest(digest).Text(record.name).Integer(formula).Integer(record.coordinates);
-  layout_.Integer(record.drives).Integer(provenance).Text(now);
+  layout_.Integer(record.drives).Integer(provenance).Text(now_);
   AddResult result;
   if (layout_.Run() > 0) {
     result.id = db_.getLastInsertRowid();
@@ -144,7 +170,8 @@ AddResult Writer::Add(const LayoutRecord& record) {
     return result;
   }
   result.id = find_layout_.Digest(digest).Ask();
-  int changed = RefreshText(result.id, record, provenance);
+  int changed = RefreshDerived(result.id, record);
+  changed += RefreshText(result.id, record, provenance);
   changed += AddResults(result.id, record, provenance);
   changed += AddCalibrations(result.id, record, provenance);
   result.status = changed > 0 ? AddStatus::kUpdated : AddStatus::kUnchanged;
@@ -163,6 +190,12 @@ void Writer::AddStructure(std::int64_t layout, const LayoutRecord& record) {
     const std::int64_t quantity = QuantityOf(parameter.name, parameter.unit);
     parameter_.Integer(layout).Integer(quantity).Real(parameter.value).Run();
   }
+}
+
+/// Numbers that follow from the layout, but that another version of the program may count
+/// otherwise.
+int Writer::RefreshDerived(std::int64_t layout, const LayoutRecord& record) {
+  return refresh_derived_.Integer(layout).Integer(record.coordinates).Integer(record.drives).Run();
 }
 
 int Writer::RefreshText(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance) {
@@ -193,12 +226,11 @@ int Writer::AddCalibrations(std::int64_t layout,
   for (const Calibration& calibration : record.calibrations) {
     const Sha256 digest = ContentDigest(calibration);
     const std::string measurements = Hex(Sha256FromHex(calibration.measurements_sha256).value());
-    const std::string now = Now();
     calibration_.Integer(layout).Digest(digest).Text(calibration.measurements).Text(measurements);
     calibration_.Text(calibration.status).RealOrNull(calibration.rms_before_um);
     calibration_.RealOrNull(calibration.rms_after_um).RealOrNull(calibration.sigma_um);
     calibration_.Integer(calibration.degrees_of_freedom).Integer(provenance);
-    changed += calibration_.Text(now).Text(calibration.report_json).Run();
+    changed += calibration_.Text(now_).Text(calibration.report_json).Run();
   }
   return changed;
 }

@@ -6,6 +6,7 @@
 #include <SQLiteCpp/Database.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,8 @@ class Writer {
  public:
   explicit Writer(SQLite::Database& db);
 
+  /// To be called after the transaction was begun.
+  void Begin();
   AddResult Add(const LayoutRecord& record);
 
  private:
@@ -51,11 +54,15 @@ class Writer {
   std::int64_t TermOf(std::string_view text);
   std::int64_t QuantityOf(std::string_view name, std::string_view unit);
   void AddStructure(std::int64_t layout, const LayoutRecord& record);
+  int RefreshDerived(std::int64_t layout, const LayoutRecord& record);
   int RefreshText(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
   int AddResults(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
   int AddCalibrations(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
 
   SQLite::Database& db_;
+  std::string now_;                // one moment for all rows of a transaction
+  std::optional<Provenance> run_;  // of the record before: most often the same again
+  std::int64_t run_id_ = 0;
   Dictionary formulas_;
   Dictionary provenances_;
   Dictionary modules_;
@@ -67,6 +74,7 @@ class Writer {
   Command layout_;
   Command find_layout_;
   Command text_;
+  Command refresh_derived_;
   Command refresh_text_;
   Command refresh_provenance_;
   Command block_;

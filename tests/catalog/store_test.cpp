@@ -127,6 +127,21 @@ TEST_F(StoreTest, TakesANewTextOfTheSameContent) {
   EXPECT_EQ(store.Stats()->layouts, 1);
 }
 
+TEST_F(StoreTest, TakesWhatAnotherVersionDerivesFromTheSameContent) {
+  Store store = Filled();
+  LayoutRecord record = KneeMill();
+  record.drives = 4;
+  record.distribution = "another key";
+  record.motions.pop_back();
+  EXPECT_EQ(store.Add(record)->status, AddStatus::kUpdated);
+  const Parsed<StoredLayout> shown = store.Show("Knee mill");
+  ASSERT_TRUE(shown) << Said(shown.error());
+  EXPECT_EQ(shown->record.drives, 4);
+  EXPECT_EQ(shown->record.distribution, "another key");
+  EXPECT_EQ(shown->record.motions.size(), 2U);
+  EXPECT_TRUE(store.Verify()->Ok());
+}
+
 TEST_F(StoreTest, FindsByNameIdAndHashPrefix) {
   Store store = Filled();
   const Parsed<StoredLayout> byname = store.Show("Hexapod");
