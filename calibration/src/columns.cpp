@@ -231,7 +231,7 @@ class HeaderReader {
       if (name.starts_with("drive.")) continue;
       const std::string unit = drives_[static_cast<std::size_t>(drive)].rotary ? "_deg" : "_mm";
       known.push_back(name + unit);
-      known.push_back("second." + name + unit);
+      known.push_back(fmt::format("second.{}{}", name, unit));
     }
     return known;
   }

@@ -102,7 +102,7 @@ ceres::Solver::Options SolverOptions(int max_iterations) {
 
 }  // namespace
 
-Fit SolveLeastSquares(std::vector<RowModel*> rows,
+Fit SolveLeastSquares(const std::vector<RowModel*>& rows,
                       const Selection& selection,
                       const Eigen::VectorXd& u,
                       const Eigen::MatrixXd& gauge,

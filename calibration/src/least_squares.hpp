@@ -27,7 +27,7 @@ struct Fit {
 /// Levenberg-Marquardt over the whitened residuals of `rows` and the priors, from `u` on. `gauge`:
 /// orthonormal columns along which u must stay 0; no column for none. The rows' starting
 /// coordinates follow the accepted steps.
-[[nodiscard]] Fit SolveLeastSquares(std::vector<RowModel*> rows,
+[[nodiscard]] Fit SolveLeastSquares(const std::vector<RowModel*>& rows,
                                     const Selection& selection,
                                     const Eigen::VectorXd& u,
                                     const Eigen::MatrixXd& gauge,

@@ -311,7 +311,7 @@ class RowReader {
     }
   }
 
-  const Cell& CellOf(const RowCells& cells, Role role) const {
+  [[nodiscard]] const Cell& CellOf(const RowCells& cells, Role role) const {
     return cells.row->cells[static_cast<std::size_t>(columns_.Find(role))];
   }
 

@@ -21,7 +21,7 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMoves = 1e-6;   ///< of what the parts alone would move
 constexpr double kSlight = 0.01;  ///< parts below this share of the largest are not worth words
-constexpr double kRadianLength_mm = 100.0;  ///< what a turn by a radian counts beside a motion
+constexpr double kRadianLengthMm = 100.0;  ///< what a turn by a radian counts beside a motion
 constexpr std::size_t kMostNamed = 6;
 constexpr std::size_t kMostRows = 12;  ///< where further measurements are tried
 
@@ -217,7 +217,7 @@ Eigen::VectorXd NullWords::Essential(const Eigen::VectorXd& change) const {
       if (change[i] == 0.0) continue;
       const Eigen::Matrix<double, 6, 1> part = pose.by_parameters.col(i) * change[i];
       effect[i] =
-          std::max(effect[i], part.head<3>().norm() + kRadianLength_mm * part.tail<3>().norm());
+          std::max(effect[i], part.head<3>().norm() + kRadianLengthMm * part.tail<3>().norm());
     }
   }
   const double largest = effect.maxCoeff();

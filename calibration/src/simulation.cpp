@@ -45,7 +45,7 @@ class PoseSampler {
     }
   }
 
-  Diagnostics Complaints(const SimulateOptions& options) const {
+  [[nodiscard]] Diagnostics Complaints(const SimulateOptions& options) const {
     Diagnostics complaints;
     std::vector<std::string> names;
     for (const auto& coordinate : machine_.coordinates()) names.push_back(coordinate.name);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Normal deviates larger than this happen once in 3.5 million.
-constexpr double kSurelyWrong_sigmas = 5.0;
-constexpr double kFarFromNominal_tolerances = 20.0;
+constexpr double kSurelyWrongSigmas = 5.0;
+constexpr double kFarFromNominalTolerances = 20.0;
 
 struct Sums {
   int count = 0;
@@ -100,7 +100,7 @@ void WarnOfOutliers(const MeasurementSet& set, CalibrationReport* report) {
   if (report->dof < 3) return;
   for (std::size_t i = 0; i < report->rows.size(); ++i) {
     const RowResidual& row = report->rows[i];
-    if (row.held_out || row.after_sigmas < kSurelyWrong_sigmas * scale) continue;
+    if (row.held_out || row.after_sigmas < kSurelyWrongSigmas * scale) continue;
     if (row.after_sigmas < 1e-3) continue;  // rounding of noise-free data
     report->diagnostics.push_back(AboutRow(set,
                                            set.measurements[i],
@@ -121,7 +121,7 @@ void WarnOfParameters(const MeasurementSet& set, CalibrationReport* report) {
       report->diagnostics.push_back(
           Warning(set, codes::kAtBound.code, fmt::format("{} ended at its bound", parameter.name)));
     }
-    const double most = kFarFromNominal_tolerances * parameter.tolerance;
+    const double most = kFarFromNominalTolerances * parameter.tolerance;
     if (parameter.tolerance > 0.0 && std::abs(parameter.change()) > most) {
       const double factor = parameter.angle ? kDegPerRad : 1.0;
       report->diagnostics.push_back(

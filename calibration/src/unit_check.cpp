@@ -15,11 +15,11 @@
 namespace kompono::calibration {
 namespace {
 
-constexpr std::size_t kMostRows = 60;   ///< enough for a median
-constexpr double kSuspicious_mm = 1.0;  ///< smaller errors are not a matter of units
-constexpr double kSuspicious_rad = 0.05;
+constexpr std::size_t kMostRows = 60;  ///< enough for a median
+constexpr double kSuspiciousMm = 1.0;  ///< smaller errors are not a matter of units
+constexpr double kSuspiciousRad = 0.05;
 constexpr double kGain = 100.0;
-constexpr double kNoPose_mm = 1000.0;  ///< what readings without a pose count as
+constexpr double kNoPoseMm = 1000.0;  ///< what readings without a pose count as
 
 struct MedianError {
   double mm = std::numeric_limits<double>::infinity();
@@ -127,13 +127,13 @@ class UnitCheck {
   void Run() {
     const std::vector<Sample> samples = Predict(machine_, set_, 1.0);
     const MedianError before = ErrorOf(samples, 1.0, 1.0);
-    if (before.mm > kSuspicious_mm && DoubtLengths(samples, before.mm)) return;
+    if (before.mm > kSuspiciousMm && DoubtLengths(samples, before.mm)) return;
     DoubtRotations(samples, before.rad);
   }
 
  private:
   bool DoubtLengths(const std::vector<Sample>& samples, double before_mm) {
-    const double to_beat_mm = std::isfinite(before_mm) ? before_mm : kNoPose_mm;
+    const double to_beat_mm = std::isfinite(before_mm) ? before_mm : kNoPoseMm;
     constexpr std::array<Suspect, 4> kSuspects{Suspect{false, 1e3, "metres"},
                                                Suspect{true, 1e3, "metres"},
                                                Suspect{false, 1e-3, "micrometres"},
@@ -161,7 +161,7 @@ class UnitCheck {
   }
 
   void DoubtRotations(const std::vector<Sample>& samples, double before_rad) {
-    if (!std::isfinite(before_rad) || before_rad < kSuspicious_rad ||
+    if (!std::isfinite(before_rad) || before_rad < kSuspiciousRad ||
         !columns_.Has(Role::kRotationVector)) {
       return;
     }

@@ -21,8 +21,8 @@ using ::testing::HasSubstr;
 using testing::kData;
 using testing::MachineOf;
 
-constexpr double kNoise_mm = 0.005;
-constexpr double kNoise_rad = 5e-6;
+constexpr double kNoiseMm = 0.005;
+constexpr double kNoiseRad = 5e-6;
 
 /// `train` for the fit and `valid` held out.
 MeasurementSet TrainAndValid(const kinematics::Machine& machine,
@@ -31,8 +31,8 @@ MeasurementSet TrainAndValid(const kinematics::Machine& machine,
                              const ReadOptions& options = {}) {
   MeasurementSet set = Good(ReadMeasurements(kData / train, machine, options));
   for (Measurement& m : set.measurements) {
-    m.sigma_mm = kNoise_mm;
-    m.sigma_rad = kNoise_rad;
+    m.sigma_mm = kNoiseMm;
+    m.sigma_rad = kNoiseRad;
   }
   for (Measurement m : Good(ReadMeasurements(kData / valid, machine, options)).measurements) {
     m.held_out = true;

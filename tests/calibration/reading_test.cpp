@@ -374,7 +374,7 @@ TEST(MeasurementFiles, WithRandomDamageAreReadOrRefusedButNeverCrash) {
       "height,30,,,,,,,0.01,,10,20,30,0,,,,\n"
       "distance,50,,,,,,,,yes,0,0,0,0,30,40,0,0\n"
       "pose,,1,2,3,0,0,-90,,1,1,2,3,90,,,,\n";
-  const std::string bytes = ",;\"#\n\r\t-+.eE0189xnaif_\xD0\x80\0";
+  const std::string bytes = ",;\"#\n\r\t-+.eE0189xnaif_\xD0\x80";
   for (unsigned seed = 1; seed <= 3000; ++seed) {
     std::mt19937 random(seed);
     std::string text = good;
