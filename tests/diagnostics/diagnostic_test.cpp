@@ -52,7 +52,11 @@ TEST(Render, ShowsPlaceCodeCaretAndHelp) {
 TEST(RenderAll, SortsByPlaceAndCounts) {
   const std::string text = "one\ntwo\n";
   Diagnostics list{{.code = "E2", .file = "f", .span = SpanOf(text, 4, 7), .message = "later"},
-                   {.severity = Severity::kWarning, .code = "W1", .file = "f", .span = SpanOf(text, 0, 3), .message = "sooner"}};
+                   {.severity = Severity::kWarning,
+                    .code = "W1",
+                    .file = "f",
+                    .span = SpanOf(text, 0, 3),
+                    .message = "sooner"}};
   const std::string rendered = RenderAll(list, {});
   EXPECT_LT(rendered.find("sooner"), rendered.find("later"));
   EXPECT_TRUE(rendered.ends_with("1 error, 1 warning\n"));

@@ -298,18 +298,9 @@ class CFile {
   }
 
   void WriteHead() {
-    int variable_count = 0;
-    for (const Node& node : local_.graph.nodes()) {
-      if (node.operation == KOMPONO_VARIABLE) {
-        variable_count = std::max(variable_count, node.operand[0] + 1);
-      }
-    }
     if (!options_.include.empty()) text_ += fmt::format("#include {}\n\n", options_.include);
-    text_ += fmt::format("void {0}(const {1} in[{2}], {1} out[{3}]) {{\n",
-                         options_.function_name,
-                         options_.real_type,
-                         std::max(variable_count, 1),
-                         expressions_.size());
+    text_ += fmt::format(
+        "void {0}(const {1} in[], {1} out[]) {{\n", options_.function_name, options_.real_type);
     std::vector<std::pair<int, std::string>> used;
     for (std::size_t i = 0; i < variables_.size(); ++i) {
       if (!variables_[i].empty()) {

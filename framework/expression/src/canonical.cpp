@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace kompono::expression_internal {
 namespace {
 
-// Beyond this a power is no longer gathered across products, so that exponents cannot overflow.
-constexpr int64_t kMostPower = int64_t{1} << 40;
+// Beyond this a power is no longer gathered across products: it costs more than it gathers.
+constexpr int64_t kMostPower = int64_t{1} << 17;
+constexpr std::size_t kMostFactors = 64;
 // Sums up to this length have a minus sign carried into them.
 constexpr std::size_t kShortSum = 8;
 
@@ -57,6 +59,42 @@ bool FactorBefore(const Graph& graph, const Factor& a, const Factor& b) {
                       f.base);
   };
   return key(a) < key(b);
+}
+
+/// The factors without which a term would have a larger domain: denominators, and what is not
+/// defined everywhere.
+std::vector<std::pair<Index, bool>> PartialFactors(const Graph& graph, Index rest) {
+  std::vector<Factor> factors;
+  double ignored = 1.0;
+  std::vector<std::pair<Index, bool>> partial;
+  if (!FactorsOf(graph, rest, kMostFactors, &ignored, &factors)) return {{rest, false}};
+  for (const Factor& factor : factors) {
+    if (factor.below || !graph.facts(factor.base).total) {
+      partial.emplace_back(factor.base, factor.below);
+    }
+  }
+  return partial;
+}
+
+/// Drops zero times something where the something is defined everywhere, or where it is not but
+/// other terms have the same gaps.
+void DropZeros(const Graph& graph, std::vector<Term>* terms) {
+  std::erase_if(*terms, [&graph](const Term& term) {
+    return term.coefficient == 0.0 && graph.facts(term.rest).total;
+  });
+  const auto is_zero = [](const Term& term) { return term.coefficient == 0.0; };
+  if (std::none_of(terms->begin(), terms->end(), is_zero)) return;
+  std::set<std::pair<Index, bool>> gaps;
+  for (const Term& term : *terms) {
+    if (is_zero(term)) continue;
+    for (const auto& gap : PartialFactors(graph, term.rest)) gaps.insert(gap);
+  }
+  std::erase_if(*terms, [&](const Term& term) {
+    if (!is_zero(term)) return false;
+    const auto own = PartialFactors(graph, term.rest);
+    return std::all_of(
+        own.begin(), own.end(), [&gaps](const auto& gap) { return gaps.contains(gap); });
+  });
 }
 
 bool IsUnit(double value) {
@@ -118,7 +156,9 @@ bool FactorsOf(const Graph& graph,
   factors->clear();
   // Users before operands, so that each node is taken apart once however often it occurs.
   std::map<std::pair<Index, bool>, int64_t, std::greater<>> waiting{{{product, false}, 1}};
+  std::size_t looked_at = 0;
   while (!waiting.empty()) {
+    if (++looked_at > 64 + 4 * most) return false;
     const auto [place, power] = *waiting.begin();
     const auto [i, below] = place;
     waiting.erase(waiting.begin());
@@ -212,9 +252,7 @@ void SortTerms(const Graph& graph, std::vector<Term>* terms) {
 }
 
 Index BuildSum(Graph& graph, std::vector<Term> terms, double constant) {
-  std::erase_if(terms, [&graph](const Term& term) {
-    return term.coefficient == 0.0 && graph.facts(term.rest).total;
-  });
+  DropZeros(graph, &terms);
   if (terms.empty()) return graph.Constant(constant);
   Index sum = -1;
   // "y - x" rather than "-x + y", "-1 - x" rather than "-x - 1": it saves the change of sign.

@@ -37,8 +37,8 @@ struct Factor {
 /// -1.
 [[nodiscard]] bool TermsOf(Graph& graph, Index sum, std::size_t most, std::vector<Term>* terms);
 
-/// Factors of something without numeric factor; false if there are more than `most`. Signs and
-/// numbers met on the way are multiplied into `coefficient`.
+/// Factors of something without numeric factor; false if there are more than `most`, or far more
+/// products to open. numbers met on the way are multiplied into `coefficient`.
 [[nodiscard]] bool FactorsOf(const Graph& graph,
                              Index product,
                              std::size_t most,

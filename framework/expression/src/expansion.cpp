@@ -11,7 +11,16 @@
 namespace kompono::expression_internal {
 namespace {
 
-constexpr std::size_t kMostFactors = 64;
+constexpr std::size_t kMostFactors = 8;
+constexpr int64_t kMostPower = 1000;  // products of higher degree stay products
+
+int64_t LargestPower(const Poly& poly) {
+  int64_t largest = 0;
+  for (const auto& [powers, coefficient] : poly) {
+    for (const auto& [generator, power] : powers) largest = std::max(largest, power);
+  }
+  return largest;
+}
 
 }  // namespace
 
@@ -156,7 +165,7 @@ Poly Expansion::Product(const Poly& a, const Poly& b) {
     return a.empty() ? Product(zero, b) : Product(a, zero);
   }
   const bool too_long = a.size() > 1 && b.size() > 1 && a.size() * b.size() > options_.most_terms;
-  if (too_long) {
+  if (too_long || LargestPower(a) + LargestPower(b) > kMostPower) {
     const Index first = Compose(a);
     return Generator(
         BuildProduct(result_,

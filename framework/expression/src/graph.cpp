@@ -9,8 +9,11 @@
 namespace kompono::expression_internal {
 namespace {
 
+/// One step of splitmix64. Weaker mixing collides in lists of like nodes with small numbers.
 uint64_t Mix(uint64_t hash, uint64_t part) {
-  hash = (hash ^ part) * 0x9E3779B97F4A7C15ULL;
+  hash = (hash ^ part) + 0x9E3779B97F4A7C15ULL;
+  hash = (hash ^ (hash >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  hash = (hash ^ (hash >> 27U)) * 0x94D049BB133111EBULL;
   return hash ^ (hash >> 31U);
 }
 

@@ -18,6 +18,8 @@ namespace {
 // How tightly text holds together; something looser than its place asks for gets brackets.
 enum Level { kOr, kAnd, kComparison, kSum, kProduct, kPower, kAtom };
 
+constexpr int64_t kMostPower = int64_t{1} << 40;
+
 struct Power {
   Index base = -1;
   int64_t power = 1;
@@ -259,7 +261,8 @@ class InfixWriter {
       const auto [place, power] = *waiting.begin();
       waiting.erase(waiting.begin());
       const Node& node = graph_.node(place.node);
-      switch (KindOf(place, root)) {
+      // Beyond all sense a product stays closed, lest the exponents overflow.
+      switch (power < kMostPower ? KindOf(place, root) : Kind::kFactor) {
         case Kind::kProduct:
         case Kind::kFraction:
           waiting[{node.operand[0], place.below}] += power;
@@ -290,8 +293,8 @@ class InfixWriter {
       if (!seen.insert(place).second) continue;
       const Node& node = graph_.node(place.node);
       const Kind kind = KindOf(place, root);
-      if (kind == Kind::kFactor) {
-        (place.below ? view->below : view->above).push_back({place.node, powers.at(place)});
+      if (const auto factor = powers.find(place); factor != powers.end()) {
+        (place.below ? view->below : view->above).push_back({place.node, factor->second});
       } else if (kind == Kind::kMinus) {
         waiting.push_back({node.operand[0], place.below});
       } else if (kind != Kind::kNumber) {

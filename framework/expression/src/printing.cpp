@@ -40,33 +40,56 @@ struct Layout {
   double most_operations = 0.0;
 };
 
-/// A square counts as one use of its base: (x + y)^2 needs no name for x + y.
-std::vector<uint32_t> UsesByReaders(const Graph& graph, std::span<const Index> roots) {
+/// How many operands of a node are written out: the square of a sum, written as power, contains the
+/// sum once.
+int WrittenOperands(const Node& node, const Notation& notation) {
+  const bool has_powers = notation.latex || notation.powers != PowerStyle::kProduct;
+  const bool is_square = node.operation == KOMPONO_MULTIPLY && node.operand[0] == node.operand[1];
+  return has_powers && is_square ? 1 : OperandCount(node.operation);
+}
+
+std::vector<uint32_t> WrittenUses(const Graph& graph,
+                                  std::span<const Index> roots,
+                                  const Notation& notation) {
   const std::vector<bool> reached = Reachable(graph.nodes(), roots);
   std::vector<uint32_t> uses(graph.size(), 0);
   for (const Index root : roots) ++uses[static_cast<std::size_t>(root)];
   for (std::size_t i = 0; i < graph.size(); ++i) {
     const Node& node = graph.nodes()[i];
     if (!reached[i]) continue;
-    const int count = OperandCount(node.operation);
-    const bool is_square = count == 2 && node.operand[0] == node.operand[1];
-    for (int k = 0; k < (is_square ? 1 : count); ++k) {
+    for (int k = 0; k < WrittenOperands(node, notation); ++k) {
       ++uses[static_cast<std::size_t>(node.operand[k])];
     }
   }
   return uses;
 }
 
+double WrittenOperations(const Graph& graph,
+                         std::span<const Index> roots,
+                         const Notation& notation) {
+  std::vector<double> written(graph.size(), 0.0);
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    const Node& node = graph.nodes()[i];
+    const int count = WrittenOperands(node, notation);
+    if (count > 0) written[i] = 1.0;
+    for (int k = 0; k < count; ++k)
+      written[i] += written[static_cast<std::size_t>(node.operand[k])];
+  }
+  double sum = 0.0;
+  for (const Index root : roots) sum += written[static_cast<std::size_t>(root)];
+  return sum;
+}
+
 std::vector<Index> NameParts(const Graph& graph,
                              std::span<const Index> roots,
-                             const std::string& part_name,
+                             const Layout& layout,
                              const VariableNames& variables,
                              PartNames* names) {
   std::set<std::string> taken;
   for (const Node& node : graph.nodes()) {
     if (node.operation == KOMPONO_VARIABLE) taken.insert(variables[node.operand[0]]);
   }
-  const std::vector<uint32_t> uses = UsesByReaders(graph, roots);
+  const std::vector<uint32_t> uses = WrittenUses(graph, roots, layout.notation);
   names->assign(graph.size(), {});
   std::vector<Index> parts;
   int number = 0;
@@ -75,7 +98,7 @@ std::vector<Index> NameParts(const Graph& graph,
     if (uses[i] < 2 || graph.facts(place).complexity < kLeastPart) continue;
     std::string name;
     do {
-      name = fmt::format("{}{}", part_name, ++number);
+      name = fmt::format("{}{}", layout.part_name, ++number);
     } while (taken.contains(name));
     (*names)[i] = std::move(name);
     parts.push_back(place);
@@ -99,9 +122,9 @@ std::vector<Line> WriteLines(std::span<const NamedExpression> expressions, const
   const VariableNames variables(layout.names, local.names);
   PartNames names;
   std::vector<Index> parts;
-  const double written = SizeOf(local.graph, local.roots).written;
+  const double written = WrittenOperations(local.graph, local.roots, layout.notation);
   if (layout.shared || written > layout.most_operations) {
-    parts = NameParts(local.graph, local.roots, layout.part_name, variables, &names);
+    parts = NameParts(local.graph, local.roots, layout, variables, &names);
   }
   std::vector<Line> lines;
   for (const Index part : parts) {

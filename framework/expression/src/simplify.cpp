@@ -4,6 +4,7 @@
 #include "pool.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <unordered_map>
@@ -230,6 +231,7 @@ class SimplifyPass {
                             (result_.Is(term.rest, KOMPONO_DIVIDE) && !below);
     const bool opens =
         is_product && FactorsOf(result_, term.rest, MostToOpen(i), &inner_coefficient, &inner) &&
+        Multiplications(inner) <= MostToOpen(i) &&
         !(below &&
           std::any_of(inner.begin(), inner.end(), [](const Factor& f) { return f.below; }));
     if (!opens) {
@@ -240,6 +242,15 @@ class SimplifyPass {
     for (const Factor& factor : inner) {
       parts->powers[{factor.base, factor.below || below}] += factor.power;
     }
+  }
+
+  /// How many multiplications powers cost, roughly.
+  static std::size_t Multiplications(const std::vector<Factor>& factors) {
+    std::size_t count = 0;
+    for (const Factor& factor : factors) {
+      count += static_cast<std::size_t>(std::bit_width(static_cast<uint64_t>(factor.power)));
+    }
+    return count;
   }
 
   void AddNumber(double value, bool below, ProductParts* parts) {

@@ -227,8 +227,10 @@ class Recording {
       uint64_t hash = std::bit_cast<uint64_t>(node.value);
       for (const int32_t part :
            {node.operation, node.operand[0], node.operand[1], node.operand[2]}) {
-        hash = (hash ^ static_cast<uint32_t>(part)) * 0x9E3779B97F4A7C15ULL;
-        hash ^= hash >> 29U;
+        hash = (hash ^ static_cast<uint32_t>(part)) + 0x9E3779B97F4A7C15ULL;  // splitmix64
+        hash = (hash ^ (hash >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+        hash = (hash ^ (hash >> 27U)) * 0x94D049BB133111EBULL;
+        hash ^= hash >> 31U;
       }
       return static_cast<std::size_t>(hash);
     }
