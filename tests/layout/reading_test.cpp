@@ -286,8 +286,9 @@ TEST(Formulas, ShowTheirDialectAtTheRightPlace) {
 }
 
 TEST(Numbers, MayBeIntegersThatADoubleRounds) {
-  const Layout layout = Good("kompono = 1\nformula = \"part X O tool\"\n[axis.X]\nzero = "
-                             "9223372036854775807\nspeed = 9007199254740993\n");
+  const Layout layout = Good(
+      "kompono = 1\nformula = \"part X O tool\"\n[axis.X]\nzero = "
+      "9223372036854775807\nspeed = 9007199254740993\n");
   EXPECT_EQ(layout.FindAxis("X")->drive.zero, 9223372036854775808.0);
 }
 

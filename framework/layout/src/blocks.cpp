@@ -14,6 +14,7 @@ namespace {
 
 std::string NamesOf(const std::vector<formula::Axis>& axes) {
   std::vector<std::string> names;
+  names.reserve(axes.size());
   for (const formula::Axis& axis : axes) names.push_back(axis.Name());
   return fmt::format("{}", fmt::join(names, " "));
 }
@@ -102,6 +103,7 @@ void LayoutReader::ReadBlockDrives(BlockDraft& draft) {
   }
   if (given == nullptr) return;
   std::vector<std::string> names;
+  names.reserve(draft.module->drives.size());
   for (const plugin::DriveDescription& drive : draft.module->drives) names.push_back(drive.name);
   for (const auto& [key, node] : *given) {
     if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
@@ -146,6 +148,7 @@ void LayoutReader::ConnectNamed(const std::string& block_name,
   }
   names_known_ = false;
   std::vector<std::string> names;
+  names.reserve(drafts_.size());
   for (const BlockDraft& draft : drafts_) names.push_back(draft.block.name);
   const std::string near = Nearest(block_name, names);
   complaints_.Error(codes::kUndefinedBlock,

@@ -74,6 +74,7 @@ void LayoutReader::ReadEnds() {
       static_cast<void>(ReadEnd(name, node.as_table()));  // its own faults count all the same
       if (!formula_good_) continue;
       std::vector<std::string> known;
+      known.reserve(end_of.size());
       for (const auto& [table, end] : end_of) known.push_back(table);
       complaints_.Error(codes::kUnknownEnd,
                         complaints_.Span(key.source()),

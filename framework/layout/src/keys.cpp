@@ -269,6 +269,7 @@ const KeyRule* TableRule::Find(std::string_view key) const {
 
 std::vector<std::string> TableRule::KeyNames() const {
   std::vector<std::string> names;
+  names.reserve(keys.size());
   for (const KeyRule& rule : keys) names.emplace_back(rule.key);
   return names;
 }

@@ -178,6 +178,7 @@ void LayoutReader::JudgeAxisTables(const std::vector<formula::Axis>& plain) {
   const toml::table* tables = TableAt(root_, "axis");
   if (tables == nullptr) return;
   std::vector<std::string> names;
+  names.reserve(plain.size());
   for (const formula::Axis& axis : plain) names.push_back(axis.Name());
   for (const auto& [key, node] : *tables) {
     if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
