@@ -378,6 +378,25 @@ TEST(Identify, ReportsWrongPatternsAllAtOnce) {
   EXPECT_THAT(text, HasSubstr("the prior deviation of delta.strut[3] must be greater than 0"));
 }
 
+TEST(Identify, FreesWhatTheLayoutLocksOnlyWhenToldTo) {
+  SimulateOptions options;
+  options.sigma_mm = 0.01;
+  PrinterRegion(&options);
+  const MeasurementSet set = Measured(Delta(), Delta().nominal(), options);
+  const auto free_names = [&set](const IdentifyOptions& identify) {
+    std::vector<std::string> names;
+    for (const IdentifiedParameter& p : Identify(Delta(), set, identify).parameters) {
+      names.push_back(p.name);
+    }
+    return names;
+  };
+  EXPECT_THAT(free_names({}), ::testing::Not(Contains("delta.azimuth[3]")));
+  EXPECT_THAT(free_names({.free = {"delta.azimuth"}}),
+              ::testing::ElementsAre("delta.azimuth[1]", "delta.azimuth[2]", "delta.azimuth[3]"));
+  EXPECT_THAT(free_names({.free = {"delta.azimuth"}, .lock = {"*[1]"}}),
+              ::testing::ElementsAre("delta.azimuth[2]", "delta.azimuth[3]"));
+}
+
 TEST(Identify, StronglyCorrelatedParametersAreListed) {
   SimulateOptions options;
   options.kind = MeasurementKind::kHeight;
