@@ -147,6 +147,10 @@ struct BadFile {
   std::string complaint;
 };
 
+void PrintTo(const BadFile& file, std::ostream* out) {
+  *out << file.name;
+}
+
 class BadFiles : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(BadFiles, AreRefusedInTheseWords) {

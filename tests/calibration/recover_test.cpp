@@ -78,6 +78,10 @@ struct Case {
   int expected_rank;
 };
 
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
+
 class DeltaRecovery : public ::testing::TestWithParam<Case> {};
 
 TEST_P(DeltaRecovery, FindsTheTruthWithinItsOwnDeviations) {
