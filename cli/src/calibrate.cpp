@@ -230,7 +230,9 @@ void AddFitOptions(CLI::App& command, Options& options) {
   command.add_option("--held-out", options.held_out, "Share of the rows kept to judge the fit (0)")
       ->type_name("FRACTION")
       ->check(CLI::Range(0.0, 0.99));
-  command.add_option("--seed", options.seed, "Of the choice of held-out rows (1)")->type_name("N");
+  command.add_option("--seed", options.seed, "Of the choice of held-out rows (1)")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   command
       .add_option(
           "--sigma-mm", options.sigma_mm, "Deviation of lengths whose row gives none (0.01)")

@@ -12,7 +12,7 @@ namespace {
 
 using Matrix6X = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-constexpr double kRadianLength_mm = 100.0;
+constexpr double kRadianLengthMm = 100.0;
 constexpr double kRank = 1e-9;  ///< relative threshold below which a direction does not count
 
 /// ω = E (Ȧ, Ḃ, Ċ)
@@ -58,10 +58,10 @@ DriveJacobian JacobianOf(const kinematics::Machine& machine,
   pose_by_z.bottomRows<3>() =
       E.completeOrthogonalDecomposition().solve(pose_by_z.bottomRows<3>().eval());
   // Millimetres and radians are made comparable on both sides.
-  pose_by_z.bottomRows<3>() *= kRadianLength_mm;
+  pose_by_z.bottomRows<3>() *= kRadianLengthMm;
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(z.size());
   for (std::size_t i = 0; i < machine.coordinates().size(); ++i) {
-    if (machine.coordinates()[i].rotary) scale[static_cast<Eigen::Index>(i)] /= kRadianLength_mm;
+    if (machine.coordinates()[i].rotary) scale[static_cast<Eigen::Index>(i)] /= kRadianLengthMm;
   }
   const Matrix6X scaled = pose_by_z * scale.asDiagonal();
 
@@ -90,7 +90,7 @@ DriveJacobian JacobianOf(const kinematics::Machine& machine,
   const Eigen::MatrixXd inverse = solver.pseudoInverse();
   out.matrix = readings_by_z * scale.asDiagonal() * inverse;
   for (std::size_t i = 0; i < out.components.size(); ++i) {
-    if (out.components[i] > 2) out.matrix.col(static_cast<Eigen::Index>(i)) *= kRadianLength_mm;
+    if (out.components[i] > 2) out.matrix.col(static_cast<Eigen::Index>(i)) *= kRadianLengthMm;
   }
   return out;
 }

@@ -180,7 +180,8 @@ void AddTruthOptions(CLI::App& command, Session& session, Options& options) {
       .add_option("--as-made",
                   options.as_made,
                   "All numbers with a tolerance off by a random part of it; any whole number")
-      ->type_name("SEED");
+      ->type_name("SEED")
+      ->check(CLI::NonNegativeNumber);
 }
 
 void AddInstrumentOptions(CLI::App& command, Session& session, Options& options) {
@@ -201,7 +202,8 @@ void AddInstrumentOptions(CLI::App& command, Session& session, Options& options)
       ->type_name("DEG")
       ->check(CLI::NonNegativeNumber);
   command.add_option("--seed", options.seed, "Of the random poses and the noise (1)")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   command
       .add_option("--region", options.region, "Ranges of virtual coordinates to draw poses from")
       ->type_name("NAME=LO:HI,")

@@ -45,6 +45,7 @@ std::optional<Diagnostic> NotExactlyOne(const Options& options) {
 
 std::vector<std::string> PoseNames() {
   std::vector<std::string> names;
+  names.reserve(kPoseLetters.size());
   for (const char letter : kPoseLetters) names.emplace_back(1, letter);
   return names;
 }

@@ -24,6 +24,8 @@ class Files : public testing::Test {
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     folder_ = name;
   }
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
   ~Files() override {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);

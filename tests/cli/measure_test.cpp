@@ -85,6 +85,8 @@ TEST_F(Measure, NamesAndRangesAreJudged) {
   EXPECT_THAT(outcome.err, HasSubstr("unknown coordinate 'W'"));
   EXPECT_EQ(Run({"measure", lambda_, "--points", "0"}).code, 2);
   EXPECT_EQ(Run({"measure", lambda_, "--sigma-mm", "-1"}).code, 2);
+  EXPECT_EQ(Run({"measure", lambda_, "--seed", "-1"}).code, 2);
+  EXPECT_EQ(Run({"measure", lambda_, "--as-made", "-1"}).code, 2);
   const Outcome mixed = Run({"measure", lambda_, "--change", "open_base=1"});
   EXPECT_EQ(mixed.code, 2);
   EXPECT_THAT(mixed.err, HasSubstr("[E0611]"));

@@ -13,7 +13,7 @@ using testing::Not;
 class Plugins : public Program {
  protected:
   /// A folder with one plugin whose sidecar is `text`.
-  std::string BadPlugin(const std::string& text) const {
+  [[nodiscard]] std::string BadPlugin(const std::string& text) const {
     std::filesystem::create_directories(folder() / "work/plugins/bad");
     Write("plugins/bad/plugin.toml", text);
     return (folder() / "work/plugins").string();
@@ -34,7 +34,7 @@ TEST_F(Plugins, LoadEveryLibrary) {
   const nlohmann::json list = Json({"plugins", "--load"})["plugins"];
   for (const nlohmann::json& plugin : list) {
     EXPECT_EQ(plugin["enabled"], true) << plugin;
-    if (plugin["library"] != "") {
+    if (!plugin["library"].get<std::string>().empty()) {
       EXPECT_TRUE(plugin.contains("compiler")) << plugin;
     }
   }

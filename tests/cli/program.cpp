@@ -65,12 +65,16 @@ Outcome Program::Execute(const std::vector<std::string>& words, const std::strin
     Redirect(folder_ / "stderr", O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
     if (::chdir((folder_ / "work").c_str()) != 0) ::_exit(126);
     std::vector<std::string> settings;
-    for (const auto& [name, value] : variables_) settings.push_back(name + "=" + value);
+    settings.reserve(variables_.size());
+    for (const auto& [name, value] : variables_)
+      settings.push_back(std::string(name).append("=").append(value));
     std::vector<char*> environment;
+    environment.reserve(settings.size() + 1);
     for (std::string& setting : settings) environment.push_back(setting.data());
     environment.push_back(nullptr);
     std::vector<std::string> copies = words;
     std::vector<char*> arguments;
+    arguments.reserve(copies.size() + 1);
     for (std::string& word : copies) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     ::execve(arguments.front(), arguments.data(), environment.data());

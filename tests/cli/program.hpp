@@ -23,6 +23,8 @@ struct Outcome {
 class Program : public testing::Test {
  protected:
   Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
   ~Program() override;
 
   /// The program with these arguments, standard input from `input`.
