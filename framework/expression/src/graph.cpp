@@ -17,6 +17,17 @@ uint64_t Mix(uint64_t hash, uint64_t part) {
   return hash ^ (hash >> 31U);
 }
 
+uint64_t HashOf(const Node& node) {
+  uint64_t hash = Mix(static_cast<uint32_t>(node.operation), std::bit_cast<uint64_t>(node.value));
+  for (const int32_t operand : node.operand) hash = Mix(hash, static_cast<uint32_t>(operand));
+  return hash;
+}
+
+bool AreEqual(const Node& a, const Node& b) {
+  return a.operation == b.operation && std::equal(a.operand, a.operand + 3, b.operand) &&
+         std::bit_cast<uint64_t>(a.value) == std::bit_cast<uint64_t>(b.value);
+}
+
 constexpr uint32_t kMost = std::numeric_limits<uint32_t>::max();
 
 }  // namespace
@@ -107,29 +118,29 @@ double Compute(int32_t operation, double a, double b, double c) {
   }
 }
 
-std::size_t Graph::Hash::operator()(const Node& node) const {
-  uint64_t hash = Mix(static_cast<uint32_t>(node.operation), std::bit_cast<uint64_t>(node.value));
-  for (const int32_t operand : node.operand) hash = Mix(hash, static_cast<uint32_t>(operand));
-  return static_cast<std::size_t>(hash);
+std::size_t Graph::SlotOf(const Node& node) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = static_cast<std::size_t>(HashOf(node)) & mask;
+  while (slots_[slot] >= 0 && !AreEqual(this->node(slots_[slot]), node)) slot = (slot + 1) & mask;
+  return slot;
 }
 
-bool Graph::Equal::operator()(const Node& a, const Node& b) const {
-  return a.operation == b.operation && std::equal(a.operand, a.operand + 3, b.operand) &&
-         std::bit_cast<uint64_t>(a.value) == std::bit_cast<uint64_t>(b.value);
-}
-
-Index Graph::Find(const Node& node) const {
-  const auto found = places_.find(node);
-  return found == places_.end() ? -1 : found->second;
+void Graph::GrowSlots() {
+  slots_.assign(std::max<std::size_t>(16, 2 * slots_.size()), -1);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    slots_[SlotOf(nodes_[i])] = static_cast<Index>(i);
+  }
 }
 
 Index Graph::Insert(const Node& node) {
-  const auto [found, is_new] = places_.try_emplace(node, static_cast<Index>(nodes_.size()));
-  if (is_new) {
+  if (2 * (nodes_.size() + 1) > slots_.size()) GrowSlots();
+  Index& place = slots_[SlotOf(node)];
+  if (place < 0) {
     facts_.push_back(FactsOf(node));
     nodes_.push_back(node);
+    place = static_cast<Index>(nodes_.size()) - 1;
   }
-  return found->second;
+  return place;
 }
 
 Facts Graph::FactsOf(const Node& node) const {

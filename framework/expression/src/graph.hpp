@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "kompono/scalar/expression_node.h"
@@ -77,18 +76,11 @@ class Graph {
   Index KnownCondition(bool holds);
   [[nodiscard]] bool IsKnownCondition(Index i, bool holds) const;
 
-  /// The node if it is here already, else -1.
-  [[nodiscard]] Index Find(const Node& node) const;
-
  private:
-  struct Hash {
-    std::size_t operator()(const Node& node) const;
-  };
-  struct Equal {
-    bool operator()(const Node& a, const Node& b) const;
-  };
-
   Index Insert(const Node& node);
+  /// The slot that holds the node, or the free one it belongs into.
+  [[nodiscard]] std::size_t SlotOf(const Node& node) const;
+  void GrowSlots();
   [[nodiscard]] Facts FactsOf(const Node& node) const;
   Index ApplySum(int32_t operation, Index a, Index b);
   Index ApplyProduct(int32_t operation, Index a, Index b);
@@ -97,7 +89,8 @@ class Graph {
 
   std::vector<Node> nodes_;
   std::vector<Facts> facts_;
-  std::unordered_map<Node, Index, Hash, Equal> places_;
+  // Places of nodes by hash, open addressing; the size is a power of two, at most half of it used.
+  std::vector<Index> slots_;
 };
 
 /// Copies what `roots` need from `from` into `to`, through Raw; returns where the roots are there.
