@@ -216,7 +216,13 @@ class ChainBuilder {
   [[nodiscard]] const layout::Layout& layout() const { return impl_->model->layout; }
 
   void Add(const formula::Item& item, bool inverse) {
-    if (const auto* axis = std::get_if<formula::Axis>(&item)) AddAxis(*axis, inverse);
+    if (const auto* axis = std::get_if<formula::Axis>(&item)) {
+      if (axis->block.empty()) {
+        AddAxis(*axis, inverse);
+      } else {  // "B:table": a mechanism of one letter
+        AddGroup({.axes = {*axis}, .orientation = {}, .block = axis->block}, inverse);
+      }
+    }
     if (const auto* group = std::get_if<formula::Group>(&item)) AddGroup(*group, inverse);
     if (const auto* leaf = std::get_if<formula::Leaf>(&item)) AddLeaf(*leaf, inverse);
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "kompono/diagnostics/suggestion.hpp"
@@ -121,7 +122,10 @@ bool TableReader::AppendNumbers(std::string_view key,
     WrongType(key, node, depth == 0 ? "a number or a list of numbers" : "made of numbers");
     return false;
   }
-  const double value = *node.value<double>();
+  // node.value<double>() would refuse integers that a double can only round.
+  const auto integer = node.value_exact<std::int64_t>();
+  const double value =
+      integer ? static_cast<double>(*integer) : node.value_exact<double>().value_or(NAN);
   if (!std::isfinite(value)) {
     complaints_->Add("E0224",
                      complaints_->Span(node.source()),
