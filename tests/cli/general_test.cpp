@@ -199,7 +199,7 @@ TEST_F(General, ColdStartOfSolveIsQuick) {
               cpu_ms);
 #ifdef KOMPONO_RELEASE
   EXPECT_LT(cpu_ms, 50.0);
-  EXPECT_LT(wall_ms, 2.0 * 50.0);  // other programs may want the processor too
+  EXPECT_LT(wall_ms, 10.0 * 50.0);  // other programs may want the processor too
 #endif
 }
 
