@@ -239,7 +239,7 @@ class CFile {
   }
 
  private:
-  Diagnostics MissingFunctions() const {
+  [[nodiscard]] Diagnostics MissingFunctions() const {
     std::set<std::string> needed;
     for (const Node& node : local_.graph.nodes()) {
       if (IsFunction(node.operation)) needed.emplace(CFunction(node.operation));

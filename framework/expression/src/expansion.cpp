@@ -235,6 +235,7 @@ Index Expansion::BuildProductOf(const Powers& powers, double* coefficient) {
     }
   }
   std::vector<Factor> factors;
+  factors.reserve(opened.size());
   for (const auto& [place, power] : opened) factors.push_back({place.first, power, place.second});
   const Term term = SplitCoefficient(result_, BuildProduct(result_, 1.0, std::move(factors)));
   *coefficient *= term.coefficient;

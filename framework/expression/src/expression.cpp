@@ -46,6 +46,7 @@ Local Access::Gather(std::span<const Expression> roots) {
       continue;
     }
     std::vector<Index> places;
+    places.reserve(members.size());
     for (const std::size_t i : members) places.push_back(roots[i].place_);
     const auto end = static_cast<std::size_t>(*std::max_element(places.begin(), places.end())) + 1;
     const std::lock_guard<std::mutex> lock(pool->mutex);

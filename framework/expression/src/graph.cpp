@@ -157,56 +157,57 @@ Facts Graph::FactsOf(const Node& node) const {
     result.total = true;
     return result;
   }
-  const int count = OperandCount(node.operation);
+  result.nonnegative = true;
+  result.total = true;
   uint64_t complexity = 1;
-  bool all_total = true;
-  bool all_nonnegative = true;
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < OperandCount(node.operation); ++k) {
     const Facts& operand = facts(node.operand[k]);
     result.hash = Mix(result.hash, operand.hash);
     complexity += operand.complexity;
     result.depth = std::max(result.depth, operand.depth + 1);
     result.first_variable = std::min(result.first_variable, operand.first_variable);
-    all_total = all_total && operand.total;
-    all_nonnegative = all_nonnegative && operand.nonnegative;
+    result.total = result.total && operand.total;
+    result.nonnegative = result.nonnegative && operand.nonnegative;
   }
   result.complexity = static_cast<uint32_t>(std::min<uint64_t>(complexity, kMost));
+  JudgeRange(node, &result);
+  return result;
+}
+
+void Graph::JudgeRange(const Node& node, Facts* result) const {
   switch (node.operation) {
+    case KOMPONO_ADD:
+      break;
     case KOMPONO_MULTIPLY:
-      result.total = all_total;
-      result.nonnegative = all_nonnegative || node.operand[0] == node.operand[1];
+      result->nonnegative = result->nonnegative || node.operand[0] == node.operand[1];
       break;
     case KOMPONO_DIVIDE:
-      result.total = all_total && IsConstant(node.operand[1]) && !IsConstant(node.operand[1], 0.0);
-      result.nonnegative = all_nonnegative;
-      break;
-    case KOMPONO_ADD:
-      result.total = all_total;
-      result.nonnegative = all_nonnegative;
+      result->total =
+          result->total && IsConstant(node.operand[1]) && !IsConstant(node.operand[1], 0.0);
       break;
     case KOMPONO_SQRT:
-      result.total = all_total && all_nonnegative;
-      result.nonnegative = true;
+      result->total = result->total && result->nonnegative;
+      result->nonnegative = true;
       break;
     case KOMPONO_ABS:
     case KOMPONO_EXP:
-      result.total = all_total;
-      result.nonnegative = true;
+      result->nonnegative = true;
       break;
     case KOMPONO_TAN:
     case KOMPONO_ASIN:
     case KOMPONO_ACOS:
     case KOMPONO_LOG:
+      result->total = false;
+      result->nonnegative = false;
       break;
     case KOMPONO_SELECT:
-      result.total = all_total;
-      result.nonnegative = facts(node.operand[1]).nonnegative && facts(node.operand[2]).nonnegative;
+      result->nonnegative =
+          facts(node.operand[1]).nonnegative && facts(node.operand[2]).nonnegative;
       break;
     default:
-      result.total = all_total;
+      result->nonnegative = false;
       break;
   }
-  return result;
 }
 
 Index Graph::Constant(double value) {

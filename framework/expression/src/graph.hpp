@@ -82,6 +82,8 @@ class Graph {
   [[nodiscard]] std::size_t SlotOf(const Node& node) const;
   void GrowSlots();
   [[nodiscard]] Facts FactsOf(const Node& node) const;
+  /// From whether all operands are total and not negative to whether the node is.
+  void JudgeRange(const Node& node, Facts* result) const;
   Index ApplySum(int32_t operation, Index a, Index b);
   Index ApplyProduct(int32_t operation, Index a, Index b);
   Index ApplyCondition(int32_t operation, Index a, Index b);

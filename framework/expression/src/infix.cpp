@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <compare>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -230,7 +229,13 @@ class InfixWriter {
   struct Place {
     Index node;
     bool below;
-    auto operator<=>(const Place&) const = default;
+    bool operator<(const Place& other) const {
+      return std::tie(node, below) < std::tie(other.node, other.below);
+    }
+  };
+
+  struct UsersFirst {
+    bool operator()(const Place& a, const Place& b) const { return b < a; }
   };
 
   /// What a product's part consists of, if it is written as part of the product.
@@ -255,7 +260,7 @@ class InfixWriter {
   /// powers, then from left to right for the order.
   [[nodiscard]] ProductView View(Index root) const {
     ProductView view;
-    std::map<Place, int64_t, std::greater<>> waiting{{{root, false}, 1}};
+    std::map<Place, int64_t, UsersFirst> waiting{{{root, false}, 1}};
     std::map<Place, int64_t> powers;
     while (!waiting.empty()) {
       const auto [place, power] = *waiting.begin();

@@ -127,6 +127,7 @@ std::vector<Line> WriteLines(std::span<const NamedExpression> expressions, const
     parts = NameParts(local.graph, local.roots, layout, variables, &names);
   }
   std::vector<Line> lines;
+  lines.reserve(parts.size() + expressions.size());
   for (const Index part : parts) {
     lines.push_back({names[static_cast<std::size_t>(part)],
                      WriteInfix(local.graph, part, layout.notation, variables, names)});
