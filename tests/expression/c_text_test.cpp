@@ -139,6 +139,7 @@ TEST(CText, NumbersComeBackExactly) {
                                     -INFINITY,
                                     NAN};
   std::vector<NamedExpression> roots;
+  roots.reserve(numbers.size());
   for (const double number : numbers) roots.push_back({"", Expression(number)});
   const CompiledC compiled(*ToC(roots, {.function_name = "numbers"}));
   const Function function = compiled.Find("numbers");

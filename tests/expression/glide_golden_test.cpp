@@ -21,7 +21,7 @@ namespace kompono {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kStrutLength_mm = 208.010;  // known to the digits given
+constexpr double kStrutLengthMm = 208.010;  // known to the digits given
 constexpr double kConstantUnderRoot = 25641.3446;
 
 /// Carriage position of a glide (KDD 5): p platform joint and a rail foot with w = p - a, direction
@@ -92,14 +92,14 @@ void ExpectPrinted(const Polynomial& polynomial, const Coefficients& printed, bo
 /// The length that gives the printed constant exactly. Half a unit of its last digit moves the
 /// constant by 0.2, so the constant knows the length better than the length's own digits do.
 double StrutLengthFromConstant() {
-  const auto form = ExpandRootForm(Formula(kStrutLength_mm), kPosition);
+  const auto form = ExpandRootForm(Formula(kStrutLengthMm), kPosition);
   const double constant =
       form.value().under.Coefficient(std::vector<int>{0, 0, 0}).ConstantValue().value();
-  return std::sqrt(kStrutLength_mm * kStrutLength_mm + kConstantUnderRoot - constant);
+  return std::sqrt(kStrutLengthMm * kStrutLengthMm + kConstantUnderRoot - constant);
 }
 
 TEST(GlideGolden, TheStrutLengthBehindThePrintedConstantHasTheKnownDigits) {
-  EXPECT_NEAR(StrutLengthFromConstant(), kStrutLength_mm, 5e-5);
+  EXPECT_NEAR(StrutLengthFromConstant(), kStrutLengthMm, 5e-5);
 }
 
 TEST(GlideGolden, ThePrintedCoefficientsComeBack) {
@@ -111,13 +111,13 @@ TEST(GlideGolden, ThePrintedCoefficientsComeBack) {
 }
 
 TEST(GlideGolden, ThePrintedFormGivesTheSameCarriagePositions) {
-  const Expression formula = Formula(kStrutLength_mm);
+  const Expression formula = Formula(kStrutLengthMm);
   const Expression expanded = ExpandUnderRoots(formula, kPosition);
   for (const std::vector<double>& p :
        {std::vector<double>{0, 0, 0}, {30, -20, 15}, {-40, 25, -35}, {5, 60, 80}}) {
     const Eigen::Vector3d w(p[0] + 60.6325, p[1] + 34.9855, p[2] - 195.8773);
     const double expected =
-        GlidePosition<double>(w, 29.9925 * kRadPerDeg, 70.003 * kRadPerDeg, kStrutLength_mm);
+        GlidePosition<double>(w, 29.9925 * kRadPerDeg, 70.003 * kRadPerDeg, kStrutLengthMm);
     EXPECT_NEAR(formula.Evaluate(p), expected, 1e-11);
     EXPECT_NEAR(expanded.Evaluate(p), expected, 1e-10);
   }
@@ -133,7 +133,7 @@ TEST(GlideGolden, TheTextReadsLikeThePrintedOne) {
                     .powers = PowerStyle::kSuperscript}),
             "0.2962x + 0.1709y + 0.9397z + sqrt(-0.9123x² + 0.1013xy + 0.5566xz - 216.1185x - "
             "0.9708y² + 0.3213yz - 124.7182y - 0.1169z² + 90.8042z + 25641.3446) - 160.1293");
-  EXPECT_EQ(ToText(Formula(kStrutLength_mm), {.names = {"x", "y", "z"}, .expand = true}),
+  EXPECT_EQ(ToText(Formula(kStrutLengthMm), {.names = {"x", "y", "z"}, .expand = true}),
             "0.296178*x + 0.170947*y + 0.939711*z + sqrt(-0.912279*x^2 + 0.101261*x*y + "
             "0.556643*x*z - 0.970777*y^2 + 0.321281*y*z - 0.116944*z^2 - 216.119*x - 124.718*y + "
             "90.8042*z + 25641.4) - 160.129");
@@ -142,7 +142,7 @@ TEST(GlideGolden, TheTextReadsLikeThePrintedOne) {
 TEST(GlideGolden, SimplifyFindsTheSharedParts) {
   // 3 sums in w; 3 products and 2 sums in u·w; its square and 3 more; 4 sums under the root; root;
   // sum.
-  const Expression formula = Formula(kStrutLength_mm);
+  const Expression formula = Formula(kStrutLengthMm);
   EXPECT_LE(formula.Simplify().Size().operations, formula.Size().operations);
   EXPECT_LE(formula.Simplify().Size().operations, 18U);
 }

@@ -132,7 +132,7 @@ class Symbol {
   static Symbol Record(KomponoOperation operation, const Symbol& a, const Symbol& b);
   static Symbol CopySign(const Symbol& magnitude, const Symbol& sign);
   static Symbol Power(const Symbol& base, const Symbol& exponent);
-  constexpr bool Is(double value) const { return IsConstant() && value_ == value; }
+  [[nodiscard]] constexpr bool Is(double value) const { return IsConstant() && value_ == value; }
 
   double value_ = 0.0;
   int32_t place_ = -1;      // in the recording; negative for a plain number
@@ -494,6 +494,7 @@ struct NumTraits<kompono::Symbol> : NumTraits<double> {
   using Nested = kompono::Symbol;
   using Literal = double;
 
+  // NOLINTBEGIN(readability-identifier-naming): Eigen's names
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -503,6 +504,7 @@ struct NumTraits<kompono::Symbol> : NumTraits<double> {
     AddCost = 8,
     MulCost = 8
   };
+  // NOLINTEND(readability-identifier-naming)
 };
 
 template <class BinaryOp>
