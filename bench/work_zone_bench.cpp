@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// The work zone of a hexapod, pose by pose: reach and ranges of six pods, hand-written for doubles
+// in this file, against the analysis on one core and on two, through the plugin's batches.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "kompono/analysis/pose_judge.hpp"
+#include "kompono/layout/layout.hpp"
+
+namespace {
+
+using kompono::analysis::CountGrid;
+using kompono::analysis::Limits;
+using kompono::analysis::PoseCount;
+using kompono::analysis::PoseJudge;
+using kompono::analysis::Region;
+using kompono::kinematics::Machine;
+
+constexpr const char* kLayout = R"(
+kompono = 1
+name = "Hexapod"
+formula = "part O (XYZABC):struts tool"
+[block.struts]
+module = "hexapod_symmetric"
+parameters = { base_radius = 600, base_half_angle = 10, platform_radius = 250, platform_half_angle = 10 }
+home = { X = 0, Y = 0, Z = 900, A = 2, B = 3, C = 4 }
+[block.struts.drive.q1]
+range = [800, 1200]
+[block.struts.drive.q2]
+range = [800, 1200]
+[block.struts.drive.q3]
+range = [800, 1200]
+[block.struts.drive.q4]
+range = [800, 1200]
+[block.struts.drive.q5]
+range = [800, 1200]
+[block.struts.drive.q6]
+range = [800, 1200]
+)";
+
+constexpr std::array<std::uint64_t, 3> kSteps{100, 100, 100};
+
+const Machine& Hexapod() {
+  static const std::array<std::filesystem::path, 1> folders{
+      std::filesystem::path(KOMPONO_BINARY_DIR) / "lib/kompono/plugins"};
+  static const auto registry = kompono::plugin::Registry::Discover(folders);
+  static const std::unique_ptr<const Machine> machine = [] {
+    auto layout = kompono::layout::ParseLayout(kLayout, "bench.toml", registry);
+    if (!layout) {
+      std::fputs(kompono::RenderAll(layout.error(), {}).c_str(), stderr);
+      std::exit(1);
+    }
+    auto built = Machine::Build(std::move(*layout), registry);
+    if (!built) std::exit(1);
+    return std::make_unique<const Machine>(std::move(*built));
+  }();
+  return *machine;
+}
+
+Region Zone(const Machine& machine) {
+  return {.z = machine.home(),
+          .varied = {0, 1, 2},
+          .lower = {-500.0, -500.0, 500.0},
+          .upper = {500.0, 500.0, 1200.0}};
+}
+
+/// As one would write it for one machine: joints known, rotation taken once per pose.
+struct PlainHexapod {
+  std::array<std::array<double, 3>, 6> base{}, platform{};
+
+  PlainHexapod() {
+    const double third = std::acos(-0.5);
+    const double half = 10.0 * third / 120.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t end = 0; end < 2; ++end) {
+        const double sign = end == 0 ? -1.0 : 1.0;
+        const double a = third * static_cast<double>(k) + half * sign;
+        const double b = third * (static_cast<double>(k) + 0.5 * sign) - half * sign;
+        base[2 * k + end] = {600.0 * std::cos(a), 600.0 * std::sin(a), 0.0};
+        platform[2 * k + end] = {250.0 * std::cos(b), 250.0 * std::sin(b), 0.0};
+      }
+    }
+  }
+
+  [[nodiscard]] bool Inside(const double* x) const {
+    const double ca = std::cos(x[3]), sa = std::sin(x[3]);
+    const double cb = std::cos(x[4]), sb = std::sin(x[4]);
+    const double cc = std::cos(x[5]), sc = std::sin(x[5]);
+    const double R[3][3] = {{cb * cc, -cb * sc, sb},
+                            {ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb},
+                            {sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb}};
+    for (std::size_t i = 0; i < 6; ++i) {
+      double square = 0.0;
+      for (std::size_t r = 0; r < 3; ++r) {
+        const double leg = x[r] + R[r][0] * platform[i][0] + R[r][1] * platform[i][1] +
+                           R[r][2] * platform[i][2] - base[i][r];
+        square += leg * leg;
+      }
+      const double length = std::sqrt(square);
+      if (length < 800.0 || length > 1200.0) return false;
+    }
+    return true;
+  }
+};
+
+std::uint64_t PlainCount(const Region& region) {
+  static const PlainHexapod hexapod;
+  std::array<double, 6> x{};
+  for (std::size_t i = 0; i < 6; ++i) x[i] = region.z[static_cast<Eigen::Index>(i)];
+  const auto middle = [&region](std::size_t i, std::uint64_t k) {
+    return region.lower[i] +
+           (static_cast<double>(k) + 0.5) * region.Extent(i) / static_cast<double>(kSteps[i]);
+  };
+  std::uint64_t inside = 0;
+  for (std::uint64_t i = 0; i < kSteps[0]; ++i) {
+    x[0] = middle(0, i);
+    for (std::uint64_t j = 0; j < kSteps[1]; ++j) {
+      x[1] = middle(1, j);
+      for (std::uint64_t k = 0; k < kSteps[2]; ++k) {
+        x[2] = middle(2, k);
+        benchmark::DoNotOptimize(x);
+        inside += hexapod.Inside(x.data()) ? 1 : 0;
+      }
+    }
+  }
+  return inside;
+}
+
+constexpr std::int64_t Poses() {
+  return static_cast<std::int64_t>(kSteps[0] * kSteps[1] * kSteps[2]);
+}
+
+void Plain(benchmark::State& state) {
+  const Region region = Zone(Hexapod());
+  std::uint64_t inside = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(inside = PlainCount(region));
+  state.SetItemsProcessed(state.iterations() * Poses());
+}
+
+void Counted(benchmark::State& state, unsigned threads) {
+  const Machine& machine = Hexapod();
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), Limits{});
+  const Region region = Zone(machine);
+  PoseCount count;
+  for (auto _ : state) count = CountGrid(*judge, region, kSteps, false, {.threads = threads});
+  if (count.inside != PlainCount(region)) state.SkipWithError("the two counts differ");
+  state.SetItemsProcessed(state.iterations() * Poses());
+}
+
+BENCHMARK(Plain)->Name("zone/baseline")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(Counted, one, 1)
+    ->Name("zone/one_core")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(Counted, two, 2)
+    ->Name("zone/two_cores")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+}  // namespace
