@@ -54,24 +54,55 @@ TEST_F(Describe, CapabilitiesOfModulesAreTheMachines) {
   std::filesystem::create_directories(folder() / "work/plugins/cutter");
   Write("plugins/cutter/plugin.toml",
         "kompono = 1\nid = 'org.example.cutter'\nversion = '2.5.0'\ncontract = '1.0'\n"
-        "[[preset]]\nid = 'cutter'\ntitle = 'Cutter'\nof = 'tool'\ncapabilities = ['milling']\n");
+        "[[preset]]\nid = 'cutter'\ntitle = 'Cutter'\nof = 'tool'\ncapabilities = "
+        "['example.milling']\n");
   Write("mill.toml",
         "kompono = 1\nname = 'Mill'\nformula = 'X O Z tool'\n"
         "[axis.X]\nrange = [0, 1]\n[axis.Z]\nrange = [0, 1]\n[tool]\nmodule = 'cutter'\n");
   Set("KOMPONO_PLUGIN_PATH", (folder() / "work/plugins").string());
-  EXPECT_EQ(Json({"describe", "mill.toml"})["capabilities"]["milling"],
+  EXPECT_EQ(Json({"describe", "mill.toml"})["capabilities"]["example.milling"],
             nlohmann::json::array({"tool"}));
-  EXPECT_THAT(Run({"describe", "mill.toml"}).out, HasSubstr("milling (tool)"));
+  EXPECT_THAT(Run({"describe", "mill.toml"}).out, HasSubstr("example.milling (tool)"));
   ASSERT_EQ(Run({"catalog", "add", "machines.db", "mill.toml"}).code, 0);
   const nlohmann::json found =
       Json({"catalog",
             "query",
             "machines.db",
-            "id in (select layout_id from capabilities where name = 'milling')",
+            "id in (select layout_id from capabilities where name = 'example.milling')",
             "--columns",
             "name, plugins"});
   ASSERT_EQ(found["rows"].size(), 1U);
   EXPECT_EQ(found["rows"][0]["plugins"], "org.example.cutter 2.5.0, org.kompono.units 0.1.0");
+}
+
+TEST_F(Describe, TellsWhatALatheMakesPossibleAndWhy) {
+  Write("lathe.toml",
+        "kompono = 1\nname = 'Lathe'\nformula = '(part1 C_h + part2 C2_h Z2) O X Z tool'\n"
+        "[part1]\nmodule = 'headstock'\n"
+        "[part2]\nmodule = 'counter_spindle'\nmount = { position = [0, 0, 1000] }\n"
+        "[axis.Z2]\nrange = [-600, 0]\n[tool]\nmodule = 'tool'\n");
+  const Outcome outcome = Run({"describe", "lathe.toml"});
+  EXPECT_THAT(outcome.out, HasSubstr("sequential work on two short parts"));
+  EXPECT_THAT(outcome.out, HasSubstr("40 to 640 mm apart by Z2"));
+  EXPECT_THAT(outcome.out, testing::Not(HasSubstr("two tools on a long part")));
+  const nlohmann::json abilities = Json({"describe", "lathe.toml"})["abilities"];
+  ASSERT_EQ(abilities.size(), 9U);
+  EXPECT_EQ(abilities[1]["name"], "take_over");
+  EXPECT_EQ(abilities[1]["possible"], true);
+  EXPECT_EQ(abilities[1]["by"], nlohmann::json({"part1", "part2", "Z2"}));
+  EXPECT_EQ(abilities[5]["name"], "parallel_parts");
+  EXPECT_EQ(abilities[5]["possible"], false);
+  EXPECT_EQ(abilities[5]["reason"], "tool is the only tool");
+  EXPECT_EQ(abilities[5]["by"], nlohmann::json::array());
+  ASSERT_EQ(Run({"catalog", "add", "machines.db", "lathe.toml"}).code, 0);
+  const nlohmann::json found =
+      Json({"catalog",
+            "query",
+            "machines.db",
+            "id in (select layout_id from capabilities where name = 'take_over')",
+            "--columns",
+            "name"});
+  ASSERT_EQ(found["rows"].size(), 1U);
 }
 
 TEST_F(Describe, WorksForEveryMachineOfTheTree) {

@@ -10,8 +10,6 @@
 #include <map>
 #include <utility>
 
-#include "kompono/diagnostics/suggestion.hpp"
-
 namespace kompono::layout {
 namespace {
 
@@ -123,24 +121,8 @@ End LayoutReader::ReadEnd(const std::string& name, const toml::table* table) {
   if (auto parameters = ReadParameters(*table, *module, units_, complaints_))
     end.parameters = std::move(*parameters);
   ReadStation(*table, *module, end);
+  JudgeStates(*table, *module, end);
   return end;
-}
-
-void LayoutReader::ReadStation(const toml::table& table,
-                               const plugin::ModuleDescription& module,
-                               End& end) {
-  if (!module.stations.empty()) end.station = module.stations.front();
-  const auto station = TextAt(table, "station");
-  if (!station) return;
-  if (std::find(module.stations.begin(), module.stations.end(), *station) !=
-      module.stations.end()) {
-    end.station = *station;
-    return;
-  }
-  complaints_.Error(codes::kUnknownStation,
-                    complaints_.Span(*table.get("station")),
-                    fmt::format("'{}' has no station '{}'", module.id, *station),
-                    DidYouMean(*station, module.stations));
 }
 
 }  // namespace kompono::layout

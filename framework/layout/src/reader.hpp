@@ -74,6 +74,9 @@ class LayoutReader {
   void ReadEnds();
   [[nodiscard]] End ReadEnd(const std::string& name, const toml::table* table);
   void ReadStation(const toml::table& table, const plugin::ModuleDescription& module, End& end);
+  void JudgeStates(const toml::table& table,
+                   const plugin::ModuleDescription& module,
+                   const End& end);
 
   // calibration.cpp
   void ReadCalibration();

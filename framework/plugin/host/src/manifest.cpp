@@ -204,16 +204,17 @@ std::optional<Refusal> JudgeShape(const MechanismShape& shape, const ModuleDescr
 }
 
 std::optional<Refusal> JudgeShape(const UnitShape& shape, const ModuleDescription& module) {
+  if (shape.states < 1)
+    return Refuse(LoadError::kSidecarMismatch,
+                  fmt::format("unit '{}' says it has {} states; one that does not move has 1",
+                              module.id,
+                              shape.states));
   const Count counts[] = {
       {"parameters", shape.parameters, static_cast<std::size_t>(module.ParameterNumbers())},
       {"stations", shape.stations, module.stations.size()},
+      {"states", shape.states, static_cast<std::size_t>(module.states)},
   };
-  if (auto refusal = JudgeCounts(module, counts)) return refusal;
-  if (shape.states >= 1) return std::nullopt;
-  return Refuse(LoadError::kSidecarMismatch,
-                fmt::format("unit '{}' says it has {} states; one that does not move has 1",
-                            module.id,
-                            shape.states));
+  return JudgeCounts(module, counts);
 }
 
 }  // namespace kompono::plugin

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "kompono/diagnostics/suggestion.hpp"
+#include "kompono/plugin/capability_words.hpp"
 
 namespace kompono::plugin {
 namespace {
@@ -45,6 +46,28 @@ std::vector<std::string> PlainStrings(TableReader& table, std::string_view key) 
   std::vector<std::string> values;
   for (Placed<std::string>& string : table.Strings(key)) values.push_back(std::move(string.value));
   return values;
+}
+
+/// Words of the vocabulary, or a plugin's own, which have a dot.
+std::vector<std::string> ReadCapabilities(TableReader& table) {
+  std::vector<std::string> known;
+  for (const CapabilityWord& word : kCapabilityWords) known.emplace_back(word.word);
+  std::vector<std::string> out;
+  for (Placed<std::string>& word : table.Strings("capabilities")) {
+    const bool listed = std::find(known.begin(), known.end(), word.value) != known.end();
+    if (!listed && word.value.find('.') == std::string::npos) {
+      table.complaints().Add(
+          "E0224",
+          word.span,
+          fmt::format("'{}' is no word for a capability", word.value),
+          DidYouMean(word.value, known) + " (a word of your own has a dot: \"example.milling\")");
+    } else if (std::find(out.begin(), out.end(), word.value) != out.end()) {
+      table.complaints().Add("E0225", word.span, fmt::format("'{}' is given twice", word.value));
+    } else {
+      out.push_back(std::move(word.value));
+    }
+  }
+  return out;
 }
 
 std::vector<std::string> ReadNames(TableReader& table,
@@ -198,6 +221,32 @@ std::string ReadModuleId(TableReader& table, std::string_view what) {
   return id;
 }
 
+/// The discrete positions of a unit and the parameter that counts them.
+void ReadStates(TableReader& table, ModuleDescription& module) {
+  module.states = table.Integer("states", Need::kOptional).value_or(1);
+  if (module.states < 1) {
+    table.Complain("E0224", "states", "a unit has at least one state");
+    module.states = 1;
+  }
+  module.counted_by = table.String("counted_by", Need::kOptional).value_or("");
+}
+
+/// `counted_by` must name a plain number without unit.
+void JudgeCounter(TableReader& table, const ModuleDescription& module) {
+  if (module.counted_by.empty()) return;
+  std::vector<std::string> names;
+  for (const ParameterDescription& parameter : module.parameters) {
+    if (parameter.unit == "1" && parameter.shape == ParameterShape::kNumber)
+      names.push_back(parameter.name);
+  }
+  if (std::find(names.begin(), names.end(), module.counted_by) != names.end()) return;
+  table.Complain(
+      "E0226",
+      "counted_by",
+      fmt::format("'{}' is no parameter that counts: a number in unit \"1\"", module.counted_by),
+      DidYouMean(module.counted_by, names));
+}
+
 /// A wrong or missing kind must not bring a row of complaints about the rest with it.
 ModuleKind ReadKind(TableReader& table) {
   const std::string kind = ReadWord(table, "kind", Need::kRequired, {"mechanism", "unit"});
@@ -241,10 +290,12 @@ ModuleDescription ReadModule(TableReader& table) {
       table.Complain("E0222", "stations", fmt::format("{} has no 'stations'", table.name()));
     else if (module.stations.empty() && table.IsArray("stations"))
       table.Complain("E0224", "stations", "a unit has at least one station");
+    ReadStates(table, module);
   }
-  module.capabilities = PlainStrings(table, "capabilities");
+  module.capabilities = ReadCapabilities(table);
   module.sources = PlainStrings(table, "sources");
   module.parameters = ReadParameters(table);
+  JudgeCounter(table, module);
   table.RefuseUnknownKeys();
   return module;
 }
@@ -280,7 +331,7 @@ PresetDescription ReadPreset(TableReader& table) {
           "E0225", "defaults", fmt::format("'{}' stands in 'fixed' and in 'defaults'", name));
     }
   }
-  preset.own.capabilities = PlainStrings(table, "capabilities");
+  preset.own.capabilities = ReadCapabilities(table);
   preset.own.sources = PlainStrings(table, "sources");
   table.RefuseUnknownKeys();
   return preset;

@@ -80,6 +80,10 @@ struct ModuleDescription {
   std::vector<LinkDescription> links;
   std::optional<StructureDescription> structure;
   std::vector<std::string> stations;  ///< of a unit
+  int states = 1;                     ///< of a unit: discrete positions; 1 if it does not move
+  /// Of a unit: the parameter that says how many of its stations "front1", "front2", … and how many
+  /// of its states there are; empty if all of them always are.
+  std::string counted_by;
   std::vector<std::string> capabilities;
   std::vector<std::string> sources;
   std::string implementation;  ///< the module whose code runs: itself, or what a preset stands on
