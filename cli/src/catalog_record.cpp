@@ -12,6 +12,7 @@
 #include <map>
 #include <set>
 
+#include "kompono/analysis/abilities.hpp"
 #include "kompono/analysis/mobility.hpp"
 #include "kompono/catalog/hash.hpp"
 #include "kompono/formula/equivalence.hpp"
@@ -72,6 +73,15 @@ void AddModules(const layout::Layout& layout,
     record.capabilities.push_back({.name = name, .detail = detail});
 }
 
+/// What the whole layout makes possible, beside the words of its modules.
+void AddAbilities(const Machine& machine, const plugin::Registry& registry, LayoutRecord& record) {
+  for (const analysis::Ability& ability : analysis::Abilities(machine, registry)) {
+    if (ability.possible)
+      record.capabilities.push_back(
+          {.name = std::string(ability.name()), .detail = ability.reason});
+  }
+}
+
 catalog::Metric MetricOf(std::string name, double value, std::string unit = "1") {
   catalog::Metric metric{
       .name = std::move(name), .value = value, .unit = std::move(unit), .method = kAtHome};
@@ -113,6 +123,7 @@ LayoutRecord RecordOf(const Machine& machine,
   AddMotions(layout.formula.left, catalog::Side::kWorkpiece, record);
   AddMotions(layout.formula.right, catalog::Side::kTool, record);
   AddModules(layout, registry, record);
+  AddAbilities(machine, registry, record);
   for (const kinematics::Parameter& parameter : machine.parameters()) {
     record.parameters.push_back({.name = parameter.name,
                                  .value = Outward(parameter.nominal, parameter.angle),

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 
+#include "kompono/analysis/abilities.hpp"
 #include "kompono/analysis/mobility.hpp"
 #include "kompono/formula/equivalence.hpp"
 #include "kompono/formula/formula.hpp"
@@ -21,7 +22,7 @@ using kinematics::Machine;
 using nlohmann::ordered_json;
 
 constexpr const char* kExamples =
-    "  kompono describe machine.toml            coordinates, drives, mobility, home\n"
+    "  kompono describe machine.toml            coordinates, drives, mobility, abilities, home\n"
     "  kompono describe machine.toml --json     the same for programs";
 
 /// What is computed once and printed in two ways.
@@ -31,6 +32,7 @@ struct Sheet {
   std::vector<kinematics::Singularity> singularities;  ///< at home
   kinematics::PoseNumbers home;
   std::map<std::string, std::vector<std::string>> capabilities;  ///< and what gives them
+  std::vector<analysis::Ability> abilities;
 };
 
 std::map<std::string, std::vector<std::string>> CapabilitiesOf(const layout::Layout& layout,
@@ -54,7 +56,8 @@ Sheet Describe(const Machine& machine, const plugin::Registry& registry) {
           .singularities = machine.Singularities(z, theta),
           .home = kinematics::NumbersFromPose(machine.ToolPose(z, theta),
                                               machine.layout().rotation_order),
-          .capabilities = CapabilitiesOf(machine.layout(), registry)};
+          .capabilities = CapabilitiesOf(machine.layout(), registry),
+          .abilities = analysis::Abilities(machine, registry)};
 }
 
 std::size_t Identifiable(const Machine& machine) {
@@ -105,6 +108,18 @@ void AddMotionsJson(const Machine& machine, ordered_json& out) {
   }
 }
 
+ordered_json AbilitiesJson(const std::vector<analysis::Ability>& abilities) {
+  ordered_json out = ordered_json::array();
+  for (const analysis::Ability& ability : abilities) {
+    out.push_back({{"name", ability.name()},
+                   {"title", ability.title()},
+                   {"possible", ability.possible},
+                   {"reason", ability.reason},
+                   {"by", ability.by}});
+  }
+  return out;
+}
+
 ordered_json SheetJson(const Sheet& sheet) {
   const layout::Layout& layout = sheet.machine.layout();
   ordered_json out{{"name", layout.name},
@@ -146,6 +161,7 @@ ordered_json SheetJson(const Sheet& sheet) {
   }
   if (layout.formula.open_base) out["open_base"] = PlacementJson(layout.open_base);
   out["capabilities"] = sheet.capabilities;
+  out["abilities"] = AbilitiesJson(sheet.abilities);
   const SingularitySummary summary = Summary(sheet.singularities);
   out["home"] = {{"pose", PoseJson(sheet.home)},
                  {"singularity", {{"type", summary.type}, {"margin", summary.margin}}}};
@@ -200,6 +216,16 @@ std::string MobilityText(const Sheet& sheet) {
   return "\n" + table.Render();
 }
 
+/// What the layout makes possible, each with its reason; what it does not is told by --json.
+std::string AbilitiesText(const Sheet& sheet) {
+  TextTable table({{"can do"}, {""}});
+  for (const analysis::Ability& ability : sheet.abilities) {
+    if (!ability.possible) continue;
+    table.Row({std::string(ability.title()), ability.reason});
+  }
+  return table.empty() ? "" : "\n" + table.Render();
+}
+
 void Print(Console& console, const Sheet& sheet) {
   const layout::Layout& layout = sheet.machine.layout();
   console.Out(console.Paint(layout.name.empty() ? layout.file.string() : layout.name, Hue::kBold) +
@@ -211,7 +237,8 @@ void Print(Console& console, const Sheet& sheet) {
     lines.Row(
         {std::string(static_cast<std::size_t>(2 * line.depth), ' ') + line.text, line.meaning});
   }
-  console.Out(lines.Render() + MotionsText(sheet.machine) + MobilityText(sheet));
+  console.Out(lines.Render() + MotionsText(sheet.machine) + MobilityText(sheet) +
+              AbilitiesText(sheet));
   TextTable facts({{""}, {""}});
   for (const layout::End& end : layout.ends) {
     facts.Row(
@@ -223,7 +250,7 @@ void Print(Console& console, const Sheet& sheet) {
   }
   if (layout.formula.open_base) facts.Row({"open base", PlacementText(layout.open_base)});
   for (const auto& [name, given_by] : sheet.capabilities)
-    facts.Row({"can do", fmt::format("{} ({})", name, Joined(given_by))});
+    facts.Row({"capability", fmt::format("{} ({})", name, Joined(given_by))});
   facts.Row({"geometry",
              fmt::format("{}, {} identifiable",
                          Counted(sheet.machine.parameters().size(), "number"),
