@@ -182,6 +182,8 @@ bool PoseBlock::Keeps(const Constraint& constraint, std::size_t pose) const {
       return SwingKept(mechanism.joints[row], own.points, own.platform, pose);
     case Constraint::Kind::kClearance:
       return ClearanceKept(mechanism.pairs[row], own.points, pose);
+    case Constraint::Kind::kRegular:
+      break;  // judged by ZoneFunction only
   }
   return true;
 }

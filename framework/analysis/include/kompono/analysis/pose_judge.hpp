@@ -36,7 +36,14 @@ struct Limits {
 
 /// One thing that can end the zone.
 struct Constraint {
-  enum class Kind { kReach, kDriveLower, kDriveUpper, kSwing, kClearance } kind = Kind::kReach;
+  enum class Kind {
+    kReach,
+    kDriveLower,
+    kDriveUpper,
+    kSwing,
+    kClearance,
+    kRegular
+  } kind = Kind::kReach;
   std::string name;  ///< "struts.q1 at its upper limit"
   int mechanism = 0;
   int row = 0;  ///< drive, joint or pair of struts of that mechanism
