@@ -89,11 +89,18 @@ TEST_P(MechanismLaws, ForwardUndoesInverse) {
     double margin = 1.0;
     for (const auto& s : machine_.Singularities(pose.z, theta_))
       margin = std::min(margin, s.margin_a);
-    EXPECT_LE((back.coordinates - pose.z).cwiseAbs().maxCoeff(), 1e-12 * size / margin)
-        << Where(pose);
+    const double tolerance = 1e-12 * size / margin;
     VectorXd again;
     machine_.DrivesOf(back.coordinates, theta_, &again);
     EXPECT_LE((again - readings).cwiseAbs().maxCoeff(), 1e-9 * size) << Where(pose);
+    if ((back.coordinates - pose.z).cwiseAbs().maxCoeff() <= tolerance) continue;
+    // Two poses with the same drives and no singularity between home and either: home cannot tell
+    // them apart (pentapods have such), so the answer is fair, and a start near the pose decides.
+    EXPECT_TRUE(tests::OnHomesBranch(machine_, back.coordinates)) << Where(pose);
+    const VectorXd near = pose.z + 1e-3 * (machine_.home() - pose.z);
+    const kinematics::Solution there = machine_.Forward(readings, theta_, near);
+    ASSERT_TRUE(there.ok()) << Where(pose) << ": " << there.message;
+    EXPECT_LE((there.coordinates - pose.z).cwiseAbs().maxCoeff(), tolerance) << Where(pose);
   }
 }
 

@@ -35,16 +35,6 @@ bool Reachable(const kinematics::Machine& machine, const VectorXd& z) {
   return readings.allFinite() && (reach.array() > 0.0).all();
 }
 
-/// The home's side of every type 2 singularity: only there is the forward solution this pose's own.
-bool OnHomesBranch(const kinematics::Machine& machine, const VectorXd& z) {
-  const auto home = machine.Singularities(machine.home(), machine.nominal());
-  const auto here = machine.Singularities(z, machine.nominal());
-  for (std::size_t i = 0; i < home.size(); ++i) {
-    if (home[i].det_a * here[i].det_a <= 0.0 || here[i].margin_a < 1e-3) return false;
-  }
-  return true;
-}
-
 kinematics::Machine Built(Parsed<layout::Layout> layout) {
   if (!layout) throw std::runtime_error(RenderAll(layout.error(), {}));
   Parsed<kinematics::Machine> machine =
@@ -90,6 +80,20 @@ unsigned Seed() {
     return given != nullptr ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : 20240607U;
   }();
   return seed;
+}
+
+bool OnHomesBranch(const kinematics::Machine& machine, const VectorXd& z) {
+  constexpr int kSamples = 24;
+  const auto home = machine.Singularities(machine.home(), machine.nominal());
+  for (int k = 1; k <= kSamples; ++k) {
+    const double share = static_cast<double>(k) / kSamples;
+    const auto here =
+        machine.Singularities(machine.home() + share * (z - machine.home()), machine.nominal());
+    for (std::size_t i = 0; i < home.size(); ++i) {
+      if (home[i].det_a * here[i].det_a <= 0.0 || here[i].margin_a < 1e-3) return false;
+    }
+  }
+  return true;
 }
 
 std::vector<NamedPose> PosesOf(const kinematics::Machine& machine,

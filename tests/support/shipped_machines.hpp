@@ -22,6 +22,11 @@ namespace kompono::tests {
 /// The seed of this run: KOMPONO_TEST_SEED or a fixed one; printed with every failure.
 [[nodiscard]] unsigned Seed();
 
+/// Whether the straight way from home to z keeps to home's side of every type 2 singularity, away
+/// from it. A like sign of det A at both ends is not enough: two crossings restore it (pentapods
+/// have such poses inside their own axis limits).
+[[nodiscard]] bool OnHomesBranch(const kinematics::Machine& machine, const kinematics::VectorXd& z);
+
 struct NamedPose {
   std::string kind;  ///< "home", "near home", "random", "near a limit"
   kinematics::VectorXd z;

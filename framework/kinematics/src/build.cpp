@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout + registry -> Machine: modules are created, every number gets its place in θ, and the
 // formula's path from the workpiece to the tool becomes a list of factors.
+#include "geometry_check.hpp"
 #include "machine_impl.hpp"
 #include <fmt/format.h>
 
@@ -366,6 +367,7 @@ Parsed<Machine> Machine::Build(layout::Layout layout, const plugin::Registry& re
   Diagnostics complaints;
   ModelBuilder builder(std::move(layout), registry);
   const std::shared_ptr<const Model> model = builder.Build(&complaints);
+  if (complaints.empty()) CheckGeometry(*model, &complaints);
   if (!complaints.empty()) return tl::unexpected(std::move(complaints));
   auto impl = BuildChain(model, "", "");
   if (!impl) return tl::unexpected(std::move(impl.error()));
