@@ -4,9 +4,9 @@
 
 #include <stdint.h>
 
-/* A recorded formula as plain data: a list of nodes, each naming its operands by their index in the list (always
- * smaller than its own). This is the form in which formulas leave a plugin; numbers of operations never change their
- * meaning. */
+/* A recorded formula as plain data: a list of nodes, each naming its operands by their index in the
+ * list (always smaller than its own). This is the form in which formulas leave a plugin; numbers of
+ * operations never change their meaning. */
 typedef enum KomponoOperation {
   KOMPONO_CONSTANT = 0, /* value */
   KOMPONO_VARIABLE = 1, /* operand[0] = number of the variable */

@@ -4,13 +4,14 @@
 
 /* What a plugin library exports: one constant, `kompono_plugin`, and nothing else.
  *
- * The host reads and judges this constant before it calls any of the plugin's functions. The version of the compiler is
- * shown to people but never judged: only plain numbers, spans of double and virtual tables of the Itanium C++ ABI cross
- * the boundary, and those agree between compilers and instruction sets.
+ * The host reads and judges this constant before it calls any of the plugin's functions. The
+ * version of the compiler is shown to people but never judged: only plain numbers, spans of double
+ * and virtual tables of the Itanium C++ ABI cross the boundary, and those agree between compilers
+ * and instruction sets.
  *
- * Promises: `magic` and `struct_size` keep their places for ever. Within one contract major, members are only added at
- * the end (struct_size grows, minor rises). An interface never changes once released: a new ability is a new interface
- * id ("kompono.mechanism/2"). */
+ * Promises: `magic` and `struct_size` keep their places for ever. Within one contract major,
+ * members are only added at the end (struct_size grows, minor rises). An interface never changes
+ * once released: a new ability is a new interface id ("kompono.mechanism/2"). */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,8 +31,9 @@ typedef struct KomponoToolchain {
   const char* compiler; /* for people: __VERSION__ */
 } KomponoToolchain;
 
-/* One module. `create` returns a pointer to the C++ interface named by `interface_id`, or null after writing a reason,
- * zero-terminated, into `reason`. Neither function lets an exception out. */
+/* One module. `create` returns a pointer to the C++ interface named by `interface_id`, or null
+ * after writing a reason, zero-terminated, into `reason`. Neither function lets an exception out.
+ */
 typedef struct KomponoModule {
   const char* id;
   const char* interface_id;
