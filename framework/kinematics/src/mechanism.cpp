@@ -7,14 +7,13 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace kompono::kinematics {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kSingularBelow = 1e-9;  ///< smallest singular value of the scaled A
+constexpr double kSingularBelow = 1e-9;  ///< reciprocal condition number of the scaled A
 constexpr int kNewtonSteps = 40;
 constexpr int kContinuationSteps = 400;
 
@@ -50,8 +49,8 @@ std::span<double> View(RowMajor& m) {
 struct Linearisation {
   VectorXd g_mm;  ///< rows scaled to mm
   MatrixXd A;     ///< rows scaled, rotary columns as they are (mm per mm, mm per rad)
-  double det = 0.0;
-  double smallest = 0.0;  ///< singular value of the fully scaled A
+  double det = 0.0;      ///< of the fully scaled A
+  double regular = 0.0;  ///< reciprocal condition number of the fully scaled A, 0 = singular
   double length_mm = 1.0;
   bool finite = true;
 };
@@ -71,8 +70,9 @@ Linearisation Linearise(const MechanismModel& mechanism,
   out.g_mm = at.values.cwiseQuotient(scaled.row_scale);
   out.A = at.by_coordinates;
   for (int i = 0; i < out.A.rows(); ++i) out.A.row(i) /= scaled.row_scale[i];
-  out.det = scaled.A.determinant();
-  out.smallest = scaled.A.jacobiSvd().singularValues().minCoeff();
+  const Eigen::PartialPivLU<MatrixXd> lu(scaled.A);
+  out.det = lu.determinant();
+  out.regular = lu.rcond();
   return out;
 }
 
@@ -93,7 +93,7 @@ MechanismSolution Newton(const MechanismModel& mechanism,
   Linearisation here = Linearise(mechanism, out.x, q, theta);
   for (out.iterations = 0; out.iterations < kNewtonSteps && here.finite; ++out.iterations) {
     out.residual = here.g_mm.cwiseAbs().maxCoeff();
-    if (here.smallest < kSingularBelow) {
+    if (here.regular < kSingularBelow) {
       out.status = SolveStatus::kSingular;
       return out;
     }
