@@ -16,9 +16,7 @@ namespace kompono {
 }
 
 [[nodiscard]] inline Pack Select(const PackMask& condition, const Pack& yes, const Pack& no) {
-  Pack chosen = no;
-  where(condition, chosen) = yes;
-  return chosen;
+  return Pack::Choose(condition, yes, no);
 }
 
 Symbol Select(const SymbolCondition& condition,

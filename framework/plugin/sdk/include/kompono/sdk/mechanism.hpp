@@ -357,7 +357,7 @@ class AutodiffMechanism : public plugin::Mechanism {
       if (status != plugin::Status::kOk) return status;
       for (std::size_t row = 0; row < rows; ++row) {
         if (lanes == kPackLanes) {
-          values[row].copy_to(batch.values[row] + begin, std::experimental::element_aligned);
+          values[row].Store(batch.values[row] + begin);
         } else {
           for (std::size_t lane = 0; lane < lanes; ++lane) {
             batch.values[row][begin + lane] = values[row][lane];
@@ -374,10 +374,13 @@ class AutodiffMechanism : public plugin::Mechanism {
     for (int i = 0; i < count; ++i) {
       const double* column = columns[i] + begin;
       if (lanes == kPackLanes) {
-        to[i].copy_from(column, std::experimental::element_aligned);
+        to[i] = Pack::Load(column);
       } else {
-        to[i] = Pack(
-            [column, lanes](auto lane) { return column[std::min<std::size_t>(lane, lanes - 1)]; });
+        std::array<double, kPackLanes> filled{};
+        for (std::size_t lane = 0; lane < kPackLanes; ++lane) {
+          filled[lane] = column[std::min(lane, lanes - 1)];
+        }
+        to[i] = Pack::Load(filled.data());
       }
     }
   }
