@@ -4,6 +4,7 @@
 #include "elf_extent.hpp"
 #include "manifest.hpp"
 #include "path_safety.hpp"
+#include "processor.hpp"
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -102,8 +103,8 @@ Library::~Library() = default;
 tl::expected<std::shared_ptr<const Library>, Diagnostic> Library::Open(
     const PluginDescription& plugin) {
   std::error_code error;
-  const std::filesystem::path file =
-      std::filesystem::absolute(plugin.sidecar, error).parent_path() / plugin.library;
+  const std::filesystem::path file = BestForThisProcessor(
+      std::filesystem::absolute(plugin.sidecar, error).parent_path(), plugin.library);
   const std::string path = file.string();
   if (auto unsafe = JudgePath(file)) return tl::unexpected(std::move(*unsafe));
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
@@ -118,7 +119,12 @@ tl::expected<std::shared_ptr<const Library>, Diagnostic> Library::Open(
     const OpeningNotice notice(path);
     std::error_code ignored;  // Boost 1.74 says "Bad file descriptor" whatever happened
     dlerror();
-    handle.load(file, ignored, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+    // What a static constructor throws must not unwind through the loader, which would leave the
+    // library half open.
+    [&]() noexcept {
+      handle.load(
+          file, ignored, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+    }();
     if (!handle.is_loaded()) return tl::unexpected(CannotOpen(path, SystemText(path)));
   }
   if (!handle.has(kSymbol))
