@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // kompono solve: tool pose -> drives, drives -> tool pose, for one pose or a table of them.
+#include "assembly_modes.hpp"
 #include "assignments.hpp"
 #include "session.hpp"
 #include "solve_table.hpp"
@@ -19,6 +20,7 @@ using kinematics::Machine;
 constexpr const char* kExamples =
     "  kompono solve machine.toml --pose X=600,Y=450,Z=-50               drives for a tool pose\n"
     "  kompono solve machine.toml --drives drive.q1=100,q2=900,Z=20      where the tool then is\n"
+    "  kompono solve machine.toml --drives q1=100,q2=900,Z=20 --all      every way it can stand\n"
     "  kompono solve machine.toml --pose X=1,Y=2,Z=3,A=5 --json          everything, for programs\n"
     "  kompono solve machine.toml --poses path.csv > drives.csv          columns x,y,z[,a,b,c]";
 
@@ -27,6 +29,7 @@ struct Options {
   std::vector<std::string> pose, drives, start;
   std::string poses, drives_file;
   std::string rotation, part, tool;
+  bool all = false;
 };
 
 Diagnostic UsageProblem(std::string message, std::string help) {
@@ -38,6 +41,10 @@ Diagnostic UsageProblem(std::string message, std::string help) {
 std::optional<Diagnostic> NotExactlyOne(const Options& options) {
   const int given = (options.pose.empty() ? 0 : 1) + (options.drives.empty() ? 0 : 1) +
                     (options.poses.empty() ? 0 : 1) + (options.drives_file.empty() ? 0 : 1);
+  if (given == 1 && options.all && options.drives.empty()) {
+    return UsageProblem("--all lists the assembly modes for given drives",
+                        "give --drives; a tool pose has the drives of the layout's modes");
+  }
   if (given == 1) return std::nullopt;
   return UsageProblem(given == 0 ? "nothing to solve" : "several things to solve",
                       "give one of --pose, --drives, --poses, --drives-file");
@@ -134,6 +141,7 @@ ExitCode Run(Session& session, const Options& options) {
   if (!options.pose.empty()) ReadPose(options, question, problems);
   if (!options.drives.empty()) ReadDrives(*machine, options, question, problems);
   if (!problems.empty()) return session.Refuse(problems);
+  if (options.all) return ShowAssemblyModes(session, *machine, *question.readings, question.order);
   if (question.pose || question.readings) return SolveOne(session, *machine, question);
   return SolveTable(session,
                     *machine,
@@ -156,6 +164,7 @@ void AddQuestionOptions(CLI::App& command, Session& session, Options& options) {
       command.add_option("--drives-file", options.drives_file, "CSV table with a column per drive")
           ->type_name("FILE"),
       ValueHint::Kind::kFile);
+  command.add_flag("--all", options.all, "With --drives: list all assembly modes");
   assignments("--start", options.start, "Virtual coordinates to start iterations from; else home");
 }
 

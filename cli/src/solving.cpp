@@ -72,6 +72,7 @@ ExitCode SolvedPose::Exit() const {
       return ExitCode::kNegative;
     case SolveStatus::kNoConvergence:
     case SolveStatus::kSingular:
+    case SolveStatus::kAmbiguous:
     case SolveStatus::kOtherAssemblyMode:
       return ExitCode::kNoSolution;
     case SolveStatus::kConverged:

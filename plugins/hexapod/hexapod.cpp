@@ -54,6 +54,31 @@ class HexapodGeometry : public kompono::sdk::AutodiffMechanism<Derived> {
     }
   }
 
+  /// Written out for the sake of forward kinematics: with r = R b and the leg l = p + r - a,
+  /// dg = 2 l·(dp + ω × r) = 2 l·dp + 2 (r × l)·ω, where ω = e_x dA + R_x e_y dB + R e_z dC.
+  template <class T>
+  void Linearise(const In<T>& in, std::span<T> g, std::span<T> A) const {
+    using std::cos;
+    using std::sin;
+    const Pose<T> X_BP = Platform(in);
+    const T ca = cos(in.x[3]);
+    const T sa = sin(in.x[3]);
+    const Vector3<T> axis_c = X_BP.R.col(2);
+    const Joints<T> joints = Derived::JointsOf(in);
+    for (std::size_t i = 0; i < kLegs; ++i) {
+      const Vector3<T> r = X_BP.R * joints.platform[i];
+      const Vector3<T> leg = X_BP.p + r - joints.base[i];
+      const Vector3<T> twice = leg + leg;
+      const Vector3<T> moment = r.cross(twice);
+      g[i] = leg.dot(leg) - in.q[i] * in.q[i];
+      const std::span<T> row = A.subspan(6 * i, 6);
+      for (int j = 0; j < 3; ++j) row[static_cast<std::size_t>(j)] = twice[j];
+      row[3] = moment[0];
+      row[4] = ca * moment[1] + sa * moment[2];
+      row[5] = axis_c.dot(moment);
+    }
+  }
+
   /// Over the middle of the base joints, as high as the mean distance of the base joints from it.
   template <class T>
   void Home(const In<T>& in, std::span<T> x) const {
@@ -85,8 +110,13 @@ class HexapodGeometry : public kompono::sdk::AutodiffMechanism<Derived> {
 
 class Hexapod final : public HexapodGeometry<Hexapod> {
  public:
-  static constexpr kompono::sdk::MechanismSpec kSpec{
-      .letters = "XYZABC", .drives = 6, .parameters = 36, .modes = 0, .closures = 6, .points = 13};
+  static constexpr kompono::sdk::MechanismSpec kSpec{.letters = "XYZABC",
+                                                     .drives = 6,
+                                                     .parameters = 36,
+                                                     .modes = 0,
+                                                     .closures = 6,
+                                                     .points = 13,
+                                                     .separable = true};
 
   template <class T>
   [[nodiscard]] static Joints<T> JointsOf(const In<T>& in) {
@@ -104,8 +134,13 @@ class Hexapod final : public HexapodGeometry<Hexapod> {
 /// pair before it, strut 2k+2 to the next.
 class SymmetricHexapod final : public HexapodGeometry<SymmetricHexapod> {
  public:
-  static constexpr kompono::sdk::MechanismSpec kSpec{
-      .letters = "XYZABC", .drives = 6, .parameters = 4, .modes = 0, .closures = 6, .points = 13};
+  static constexpr kompono::sdk::MechanismSpec kSpec{.letters = "XYZABC",
+                                                     .drives = 6,
+                                                     .parameters = 4,
+                                                     .modes = 0,
+                                                     .closures = 6,
+                                                     .points = 13,
+                                                     .separable = true};
 
   template <class T>
   [[nodiscard]] static Joints<T> JointsOf(const In<T>& in) {

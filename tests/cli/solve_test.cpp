@@ -270,6 +270,46 @@ TEST_F(Solve, StartChoosesWhereIterationsBegin) {
   EXPECT_THAT(bad.err, HasSubstr("known are: drive.X, drive.Y, Z"));
 }
 
+TEST_F(Solve, AllAssemblyModesOfALambdaAreEnumerated) {
+  const Sliders at = Lambda(620.0, 555.0);
+  const std::string drives =
+      "drive.q1=" + std::to_string(at.q1) + ",drive.q2=" + std::to_string(at.q2) + ",Z=0";
+  const nlohmann::json all = Json({"solve", lambda_, "--drives", drives, "--all"});
+  EXPECT_EQ(all["complete"], true);
+  ASSERT_EQ(all["assembly_modes"].size(), 2U) << all.dump(2) << " two circles meet twice";
+  const nlohmann::json& first = all["assembly_modes"][0];
+  EXPECT_EQ(first["as_laid_out"], true);
+  EXPECT_NEAR(first["coordinates"]["drive.X"].get<double>(), 620.0, 1e-5);
+  EXPECT_NEAR(first["coordinates"]["drive.Y"].get<double>(), 555.0, 1e-5);
+  const nlohmann::json& mirrored = all["assembly_modes"][1];
+  EXPECT_NEAR(mirrored["coordinates"]["drive.X"].get<double>(), 620.0, 1e-5);
+  EXPECT_NEAR(mirrored["coordinates"]["drive.Y"].get<double>(), -555.0, 1e-5);
+}
+
+TEST_F(Solve, AllAssemblyModesOfAHexapodAreSaidToBeSearchedFor) {
+  const nlohmann::json home =
+      Json({"solve", Machine("linuxcnc_genhexkins"), "--pose", "X=1,Y=2,Z=20,A=3,B=-4,C=5"});
+  std::string drives;
+  for (const auto& [name, value] : home["drives"].items()) {
+    drives += (drives.empty() ? "" : ",") + name + "=" + value.dump();
+  }
+  const nlohmann::json all =
+      Json({"solve", Machine("linuxcnc_genhexkins"), "--drives", drives, "--all"});
+  EXPECT_EQ(all["complete"], false);
+  EXPECT_GT(all["starts"].get<int>(), 0);
+  ASSERT_GE(all["assembly_modes"].size(), 2U) << "at least the one mirrored in the base";
+  EXPECT_LE(all["assembly_modes"].size(), 40U) << "more than any hexapod has";
+  EXPECT_EQ(all["assembly_modes"].size() % 2, 0U) << "with flat joints they come in mirrored pairs";
+  EXPECT_EQ(all["assembly_modes"][0]["as_laid_out"], true);
+  EXPECT_NEAR(all["assembly_modes"][0]["pose"]["Z"].get<double>(), 20.0, 1e-9);
+}
+
+TEST_F(Solve, AllNeedsDrives) {
+  const Outcome outcome = Run({"solve", lambda_, "--pose", "X=0,Y=0,Z=0", "--all"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--all lists the assembly modes for given drives"));
+}
+
 TEST_F(Solve, PartAndToolOfAForkedFormula) {
   Write("fork.toml",
         "kompono = 1\nformula = '(part1 X + part2 X2) O Z (tool1 + tool2)'\n"

@@ -131,6 +131,37 @@ TEST_P(Jacobians, OfEveryQuantityMatchDifferences) {
   }
 }
 
+TEST_P(Jacobians, OfTheClosureByCoordinatesAloneAreThoseThatComeWithTheOthers) {
+  for (const tests::NamedPose& pose : poses_) {
+    for (const Machine::BlockView& view : machine_.blocks()) {
+      const plugin::MechanismShape shape = view.code->Shape();
+      VectorXd x(shape.coordinates);
+      for (std::size_t i = 0; i < view.coordinates.size(); ++i) {
+        x[static_cast<Eigen::Index>(i)] = view.block->letters[i].sign * pose.z[view.coordinates[i]];
+      }
+      const VectorXd theta = theta_.segment(view.first_parameter, shape.parameters);
+      Inputs at{x, VectorXd::Zero(shape.drives), theta};
+      at.q = Value(view, Quantity::kDrives, at, static_cast<std::size_t>(shape.drives));
+      const auto span = [](auto& m) {
+        return std::span(m.data(), static_cast<std::size_t>(m.size()));
+      };
+      const plugin::MechanismState state{span(at.x), span(at.q), span(at.theta), view.modes};
+      VectorXd values(shape.closures);
+      RowMajor alone(shape.closures, shape.coordinates);
+      RowMajor with_others(shape.closures, shape.coordinates);
+      RowMajor by_q(shape.closures, shape.drives);
+      ASSERT_EQ(view.code->Evaluate(Quantity::kClosure, state, {span(values), span(alone), {}, {}}),
+                plugin::Status::kOk);
+      ASSERT_EQ(view.code->Evaluate(
+                    Quantity::kClosure, state, {span(values), span(with_others), span(by_q), {}}),
+                plugin::Status::kOk);
+      EXPECT_LE((alone - with_others).cwiseAbs().maxCoeff(),
+                1e-12 * with_others.cwiseAbs().maxCoeff())
+          << GetParam() << ", " << pose.kind << ", seed " << tests::Seed();
+    }
+  }
+}
+
 /// Twist of the pose from a to b, tool point velocity first, for a small step.
 VectorXd Twist(const Pose<double>& a, const Pose<double>& b) {
   const Matrix3<double> W = b.R * a.R.transpose();

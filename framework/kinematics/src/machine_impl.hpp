@@ -89,7 +89,7 @@ struct Wanted {
                                   const VectorXd& theta,
                                   Wanted wanted);
 
-/// x of a mechanism from its drive coordinates: closed form or damped Newton with continuation.
+/// x of a mechanism from its drive coordinates: closed form, or followed from the start.
 struct MechanismSolution {
   SolveStatus status = SolveStatus::kNoConvergence;
   std::string message;
@@ -97,10 +97,35 @@ struct MechanismSolution {
   int iterations = 0;
   double residual = 0.0;  ///< mm
 };
-[[nodiscard]] MechanismSolution SolveMechanism(const MechanismModel& mechanism,
+[[nodiscard]] MechanismSolution SolveMechanism(const Machine::Impl& impl,
+                                               const MechanismModel& mechanism,
                                                const VectorXd& q,
                                                const VectorXd& theta,
                                                const VectorXd& x_start);
+
+/// A mechanism followed from many starts at once; refused ones are not numbers. One column per
+/// start.
+struct Followed {
+  plugin::Status status = plugin::Status::kOk;
+  MatrixXd x;
+};
+[[nodiscard]] Followed FollowFrom(const MechanismModel& mechanism,
+                                  const VectorXd& q,
+                                  const VectorXd& theta,
+                                  const MatrixXd& x_starts);
+
+/// Limits of a mechanism's own coordinates, infinite where the layout has none; both empty when it
+/// has none at all.
+struct LocalLimits {
+  std::vector<double> lower, upper;
+};
+[[nodiscard]] LocalLimits LimitsOf(const Machine::Impl& impl, const MechanismModel& mechanism);
+
+/// Whether the loops close at x with each leg on the side its mode says.
+[[nodiscard]] bool ClosesOnItsModes(const MechanismModel& mechanism,
+                                    const VectorXd& x,
+                                    const VectorXd& q,
+                                    const VectorXd& theta);
 
 /// A with its rows scaled by their length, rotary columns by the mechanism's size, so that its
 /// entries are pure numbers.

@@ -52,6 +52,8 @@ std::string_view Name(SolveStatus status) {
       return "no convergence";
     case SolveStatus::kSingular:
       return "singular";
+    case SolveStatus::kAmbiguous:
+      return "ambiguous";
     case SolveStatus::kOtherAssemblyMode:
       return "other assembly mode";
     case SolveStatus::kOverdetermined:

@@ -262,7 +262,7 @@ Solution Machine::CoordinatesOf(const VectorXd& readings,
     const layout::Block& block = BlockOf(*impl_, mechanism);
     const VectorXd q = DriveCoordinates(*impl_, mechanism, readings, theta);
     const MechanismSolution solved =
-        SolveMechanism(mechanism, q, theta, LocalCoordinates(*impl_, mechanism, start));
+        SolveMechanism(*impl_, mechanism, q, theta, LocalCoordinates(*impl_, mechanism, start));
     for (std::size_t i = 0; i < mechanism.coordinate.size(); ++i) {
       out.coordinates[mechanism.coordinate[i]] =
           block.letters[i].sign * solved.x[static_cast<Eigen::Index>(i)];

@@ -80,7 +80,9 @@ enum class SolveStatus {
   kConverged,
   kOutOfReach,  ///< a drive cannot reach; `reach` tells which and by how much
   kNoConvergence,
-  kSingular,           ///< det A or det B vanished on the way
+  kSingular,   ///< det A or det B vanished on the way
+  kAmbiguous,  ///< two poses within the limits have these readings, and the start is near to
+               ///< neither
   kOtherAssemblyMode,  ///< a solution was found, but on another branch than the start: not reported
                        ///< as right
   kOverdetermined,     ///< the machine has too few coordinates for the given components
@@ -110,6 +112,26 @@ struct Solution {
   int iterations = 0;
   double residual = 0.0;  ///< largest error left: mm, rad
   [[nodiscard]] bool ok() const { return status == SolveStatus::kConverged; }
+};
+
+/// One way in which a machine can stand with given drive readings.
+struct AssemblyMode {
+  VectorXd coordinates;  ///< z
+  Pose<double> X_WT;
+  /// Per mechanism of the chain its modes, each +1 or -1, as a layout writes them; empty where the
+  /// mechanism has none.
+  std::vector<std::vector<double>> modes;
+  std::vector<double> det_a;  ///< per mechanism, of the scaled A: its sign tells the sides apart
+  bool as_laid_out = false;   ///< the one that Forward gives from home
+};
+
+struct AssemblyModes {
+  std::vector<AssemblyMode> found;  ///< at most kMost of them, the one of the layout first
+  /// Every mechanism has closed forms, so that these are all; else they were found from `starts`
+  /// random starts, and there may be more.
+  bool complete = false;
+  int starts = 0;
+  static constexpr std::size_t kMost = 1024;
 };
 
 /// Twists are (v, ω): velocity of the tool point and angular velocity, both in W. 6 rows.
@@ -161,7 +183,8 @@ class Machine {
                 VectorXd* reach = nullptr,
                 MatrixXd* by_coordinates = nullptr) const;
 
-  /// z for given readings: closed form where a mechanism has one, else damped Newton from `start`.
+  /// z for given readings: closed form where a mechanism has one, else followed from `start`;
+  /// what cannot be proven to lie on the start's assembly mode is refused.
   [[nodiscard]] Solution CoordinatesOf(const VectorXd& readings,
                                        const VectorXd& theta,
                                        const VectorXd& start) const;
@@ -181,6 +204,9 @@ class Machine {
   [[nodiscard]] Solution Forward(const VectorXd& readings) const {
     return Forward(readings, nominal(), home());
   }
+
+  /// All ways in which the machine can stand with these readings.
+  [[nodiscard]] AssemblyModes AllForward(const VectorXd& readings, const VectorXd& theta) const;
 
   /// Forward with sensitivities; the start decides the branch.
   [[nodiscard]] MeasuredPose Measure(const VectorXd& readings,

@@ -74,6 +74,34 @@ struct MechanismBatch {
   double* const* values = nullptr;  ///< values[i][k]: value i at pose k
 };
 
+/// What a forward solution is worth. Numbers never change their meaning.
+enum class ForwardOutcome : std::int32_t {
+  kProven = 0,           ///< the pose on the assembly mode of the start
+  kBlocked = 1,          ///< det A vanishes on the way, or the drives do not fit one another
+  kOtherMode = 2,        ///< the loops close, but with a leg on its other side (type 1 crossed)
+  kStartOutOfReach = 3,  ///< the start itself is no pose of the mechanism
+  kAmbiguous = 4,  ///< beyond a near singularity another pose, nearer than the start and within the
+                   ///< limits, has the same drives
+};
+
+/// Forward kinematics of many poses: from `starts`, poses on the wanted assembly mode, to the poses
+/// with the given drives. What cannot be proven to lie on the start's assembly mode is refused: its
+/// coordinates are not numbers.
+struct MechanismForward {
+  std::size_t count = 0;
+  const double* const* drives = nullptr;  ///< drives[i][k]
+  const double* const* starts = nullptr;  ///< starts[i][k]; null: `start` for all
+  std::span<const double> start;
+  std::span<const double> parameters;
+  std::span<const double> modes;
+  std::span<const double> lower;  ///< limits of the coordinates, or empty
+  std::span<const double> upper;
+  double* const* coordinates = nullptr;  ///< may be the same as `starts`
+  ForwardOutcome* outcomes = nullptr;    ///< one per pose
+  double* reached = nullptr;  ///< per pose the part of the way that was proven, 0 to 1; may be null
+  std::int32_t* iterations = nullptr;  ///< per pose the matrices factored; may be null
+};
+
 /// Receives a recorded formula. Variables are numbered x, then q, then θ, then modes. `roots` are
 /// the values (then, if asked for, their derivatives by x, row-major).
 struct FormulaReceiver {
@@ -102,6 +130,8 @@ class KOMPONO_CONTRACT_API Mechanism {
   [[nodiscard]] virtual Status Record(Quantity quantity,
                                       bool with_derivatives,
                                       const FormulaReceiver& receiver) const noexcept = 0;
+  /// kUnsupported where the loops are not as many as the coordinates.
+  [[nodiscard]] virtual Status Forward(const MechanismForward& batch) const noexcept = 0;
 };
 
 struct UnitShape {

@@ -17,6 +17,8 @@
 #include "kompono/scalar/pack.hpp"
 #include "kompono/scalar/select.hpp"
 #include "kompono/scalar/symbol.hpp"
+#include "kompono/sdk/arguments.hpp"
+#include "kompono/sdk/forward_batch.hpp"
 #include "kompono/sdk/plugin.hpp"
 
 /// The base of a mechanism plugin. The author writes the geometry once, as templates over the
@@ -34,47 +36,18 @@
 ///     };
 ///     KOMPONO_PLUGIN("org.example.biglide", "1.0.0", KOMPONO_MODULE("biglide", BiGlide))
 ///
-/// and may add
-///     template <class T> kompono::Pose<T> Platform(const Arguments<T>& in) const;         //
-///     default: product of letters template <class T> void Coordinates(const Arguments<T>& in,
-///     std::span<T> x) const;  // closed-form forward template <class T> void Home(const
-///     Arguments<T>& in, std::span<T> x) const;         // a pose inside the work zone
+/// and may add, each a template over T,
+///     Pose<T> Platform(in) const;            the default is the product of the letters
+///     void Coordinates(in, span<T> x) const; closed-form forward kinematics
+///     void Home(in, span<T> x) const;        a pose inside the work zone
+///     void Linearise(in, span<T> g, span<T> A) const;
+///                                            the closure with its derivatives by x, row-major,
+///                                            where they are worth writing out for speed
 ///
 /// T is double, Pack, Jet over double, Symbol or Jet over Symbol: no `if` on a T, write
 /// Select(Less(a, b), x, y); math functions unqualified after `using std::sqrt;`. Law tests check
 /// Closure(x, Drives(x)) = 0 for every such module.
 namespace kompono::sdk {
-
-/// Numbers of things; must agree with the sidecar. Lengths are mm, angles rad.
-struct MechanismSpec {
-  std::string_view letters;  ///< local coordinates in order
-  int drives = 0;
-  int parameters = 0;  ///< numbers in all: a point counts three
-  int modes = 0;
-  int closures = 0;
-  int points = 0;
-};
-
-/// What the author's templates read.
-template <class T>
-struct Arguments {
-  std::span<const T> x;          ///< local coordinates
-  std::span<const T> q;          ///< drive positions
-  std::span<const T> parameter;  ///< in the order of the sidecar
-  std::span<const T> mode;       ///< each +1 or -1
-
-  [[nodiscard]] Vector3<T> Point(std::size_t first) const {
-    return {parameter[first], parameter[first + 1], parameter[first + 2]};
-  }
-};
-
-/// What Drives writes: positions, and per drive a margin in mm² (or rad²) that is negative when out
-/// of reach.
-template <class T>
-struct DriveValues {
-  std::span<T> q;
-  std::span<T> reach;
-};
 
 template <class Derived>
 class AutodiffMechanism : public plugin::Mechanism {
@@ -117,6 +90,15 @@ class AutodiffMechanism : public plugin::Mechanism {
       plugin::Quantity quantity, const plugin::MechanismBatch& batch) const noexcept final {
     try {
       return EvaluateBatchChecked(quantity, batch);
+    } catch (...) {
+      return plugin::Status::kException;
+    }
+  }
+
+  [[nodiscard]] plugin::Status Forward(const plugin::MechanismForward& batch) const noexcept final {
+    try {
+      if constexpr (Derived::kSpec.closures == Nx()) return ForwardBatch(derived(), batch);
+      return plugin::Status::kUnsupported;
     } catch (...) {
       return plugin::Status::kException;
     }
@@ -183,6 +165,13 @@ class AutodiffMechanism : public plugin::Mechanism {
     }
   };
   static constexpr std::size_t Count(int number) { return static_cast<std::size_t>(number); }
+
+  [[nodiscard]] static Arguments<double> In(const plugin::MechanismState& state) {
+    return {.x = state.coordinates,
+            .q = state.drives,
+            .parameter = state.parameters,
+            .mode = state.modes};
+  }
 
   template <class T>
   static void Load(const plugin::MechanismState& state, Workspace<T>& workspace) {
@@ -268,11 +257,17 @@ class AutodiffMechanism : public plugin::Mechanism {
     if (!SizesAgree(quantity, state, out)) return plugin::Status::kBadSize;
     const bool by_others = !out.by_drives.empty() || !out.by_parameters.empty();
     if (!by_others && out.by_coordinates.empty()) {
-      Workspace<double> workspace;
-      Load(state, workspace);
-      return Run<double>(quantity, workspace.View(), out.values);
+      return Run<double>(quantity, In(state), out.values);
     }
-    if (!by_others) return Differentiate<Nx()>(quantity, state, out, 0, Nx());
+    if (!by_others) {
+      if constexpr (kHasLinearise<Derived>) {
+        if (quantity == plugin::Quantity::kClosure) {
+          derived().Linearise(In(state), out.values, out.by_coordinates);
+          return plugin::Status::kOk;
+        }
+      }
+      return Differentiate<Nx()>(quantity, state, out, 0, Nx());
+    }
     plugin::Status status = plugin::Status::kOk;
     const auto pass = [&](bool wanted, int first, int count) {
       for (int i = 0; wanted && i < count && status == plugin::Status::kOk; i += kChunk) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forward kinematics from home over a whole work zone: the right pose or a refusal, never a wrong
+// pose, in packs and one by one, whatever the size of the machine.
+#include "shipped_machines.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace kompono {
+namespace {
+
+using kinematics::Machine;
+using plugin::ForwardOutcome;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct Box {
+  std::vector<double> lower, upper, home;
+};
+
+/// The first mechanism of a shipped machine, made `size` times as large.
+class Sized {
+ public:
+  Sized(const std::string& file, double size, const Box& box)
+      : machine_(tests::LoadMachine(file)), view_(machine_.blocks().at(0)), box_(box) {
+    const plugin::MechanismShape shape = view_.code->Shape();
+    const kinematics::VectorXd theta = machine_.nominal();
+    for (int i = 0; i < shape.parameters; ++i) {
+      const kinematics::Parameter& parameter =
+          machine_.parameters()[static_cast<std::size_t>(view_.first_parameter + i)];
+      theta_.push_back(theta[view_.first_parameter + i] * (parameter.angle ? 1.0 : size));
+    }
+    for (std::size_t i = 0; i < box_.lower.size(); ++i) {
+      const double by = IsRotaryLetter(view_.description->letters[i]) ? kDegree : size;
+      box_.lower[i] *= by;
+      box_.upper[i] *= by;
+      box_.home[i] *= by;
+    }
+  }
+
+  struct Count {
+    std::size_t right = 0, wrong = 0, refused = 0;
+  };
+
+  /// `batch` poses are asked for at once.
+  [[nodiscard]] Count FromHome(std::size_t count, std::size_t batch, bool limits) const {
+    const std::size_t n = box_.lower.size();
+    const auto drives = static_cast<std::size_t>(view_.code->Shape().drives);
+    std::mt19937 random(tests::Seed());
+    std::vector<std::vector<double>> x(n, std::vector<double>(count));
+    for (std::size_t i = 0; i < n; ++i) {
+      std::uniform_real_distribution<double> within(box_.lower[i], box_.upper[i]);
+      for (double& number : x[i]) number = within(random);
+    }
+    std::vector<std::vector<double>> q(drives, std::vector<double>(count));
+    std::vector<std::vector<double>> found = x;
+    std::vector<ForwardOutcome> outcomes(count);
+    EXPECT_EQ(view_.code->EvaluateBatch(plugin::Quantity::kDrives,
+                                        {.count = count,
+                                         .coordinates = Columns(x, 0).data(),
+                                         .parameters = theta_,
+                                         .modes = view_.modes,
+                                         .values = MutableColumns(q, 0).data()}),
+              plugin::Status::kOk);
+    for (std::size_t begin = 0; begin < count; begin += batch) {
+      plugin::MechanismForward question{.count = std::min(batch, count - begin)};
+      const auto drive_columns = Columns(q, begin);
+      const auto found_columns = MutableColumns(found, begin);
+      question.drives = drive_columns.data();
+      question.start = box_.home;
+      question.parameters = theta_;
+      question.modes = view_.modes;
+      if (limits) {
+        question.lower = box_.lower;
+        question.upper = box_.upper;
+      }
+      question.coordinates = found_columns.data();
+      question.outcomes = outcomes.data() + begin;
+      EXPECT_EQ(view_.code->Forward(question), plugin::Status::kOk);
+    }
+    return Judge(x, found, outcomes);
+  }
+
+ private:
+  static std::vector<const double*> Columns(const std::vector<std::vector<double>>& table,
+                                            std::size_t begin) {
+    std::vector<const double*> out;
+    for (const auto& column : table) out.push_back(column.data() + begin);
+    return out;
+  }
+  static std::vector<double*> MutableColumns(std::vector<std::vector<double>>& table,
+                                             std::size_t begin) {
+    std::vector<double*> out;
+    for (auto& column : table) out.push_back(column.data() + begin);
+    return out;
+  }
+
+  [[nodiscard]] Count Judge(const std::vector<std::vector<double>>& x,
+                            const std::vector<std::vector<double>>& found,
+                            const std::vector<ForwardOutcome>& outcomes) const {
+    Count out;
+    for (std::size_t k = 0; k < outcomes.size(); ++k) {
+      if (outcomes[k] != ForwardOutcome::kProven) {
+        EXPECT_TRUE(std::isnan(found[0][k])) << "a refused pose is not a number";
+        ++out.refused;
+        continue;
+      }
+      double error = 0.0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        error = std::max(error, std::abs(found[i][k] - x[i][k]) / (box_.upper[i] - box_.lower[i]));
+      }
+      ++(error < 1e-7 ? out.right : out.wrong);
+    }
+    return out;
+  }
+
+  Machine machine_;
+  Machine::BlockView view_;
+  Box box_;
+  std::vector<double> theta_;
+};
+
+const Box kHexapodBox{{-6, -6, 16, -35, -35, -35}, {6, 6, 26, 35, 35, 35}, {0, 0, 20, 0, 0, 0}};
+
+TEST(ForwardNeverLies, OnAHexapodOfAnySizeTiltedTo35Degrees) {
+  for (const double size : {1.0, 25.4, 0.0254}) {  // of LinuxCNC's genhexkins, as if inch or metre
+    const Sized hexapod("linuxcnc_genhexkins", size, kHexapodBox);
+    const Sized::Count count = hexapod.FromHome(100'000, 100'000, true);
+    EXPECT_EQ(count.wrong, 0U) << "seed " << tests::Seed();
+    // 0.05 % of the poses lie beyond a singularity from home, and as many have such a pose as twin.
+    EXPECT_LE(count.refused, 150U) << "seed " << tests::Seed();
+  }
+}
+
+TEST(ForwardNeverLies, OneByOneAsInPacks) {
+  const Sized hexapod("linuxcnc_genhexkins", 1.0, kHexapodBox);
+  const Sized::Count single = hexapod.FromHome(20'000, 1, true);
+  EXPECT_EQ(single.wrong, 0U) << "seed " << tests::Seed();
+  EXPECT_LE(single.refused, 45U) << "seed " << tests::Seed();
+}
+
+TEST(ForwardNeverLies, WithoutLimitsThePoseOnTheStartsSideIsTheAnswer) {
+  Box box = kHexapodBox;  // tilts at which det A keeps its sign
+  for (std::size_t i = 3; i < 6; ++i) {
+    box.lower[i] = -15.0;
+    box.upper[i] = 15.0;
+  }
+  const Sized::Count count =
+      Sized("linuxcnc_genhexkins", 1.0, box).FromHome(50'000, 50'000, false);
+  EXPECT_EQ(count.right, 50'000U) << "seed " << tests::Seed();
+}
+
+TEST(ForwardNeverLies, DrivesThatFitNoPoseAreRefusedWithTheReason) {
+  const Machine machine = tests::LoadMachine("linuxcnc_genhexkins");
+  kinematics::VectorXd readings;
+  machine.DrivesOf(machine.home(), machine.nominal(), &readings);
+  readings[0] *= 3.0;
+  const kinematics::Solution solved = machine.Forward(readings);
+  EXPECT_EQ(solved.status, kinematics::SolveStatus::kSingular);
+  EXPECT_THAT(solved.message, testing::StartsWith("struts: followed from the start"));
+  EXPECT_FALSE(solved.coordinates.allFinite());
+}
+
+}  // namespace
+}  // namespace kompono
