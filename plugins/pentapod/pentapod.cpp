@@ -13,8 +13,13 @@ class Pentapod final : public kompono::sdk::AutodiffMechanism<Pentapod> {
  public:
   /// B before A: the platform's rotation is Ry(B) Rx(A), which leaves no turn about z to the
   /// controllers that write Rz(C) Ry(B) Rx(A).
-  static constexpr kompono::sdk::MechanismSpec kSpec{
-      .letters = "XYZBA", .drives = 5, .parameters = 25, .modes = 0, .closures = 5, .points = 16};
+  static constexpr kompono::sdk::MechanismSpec kSpec{.letters = "XYZBA",
+                                                     .drives = 5,
+                                                     .parameters = 25,
+                                                     .modes = 0,
+                                                     .closures = 5,
+                                                     .points = 16,
+                                                     .separable = true};
 
   template <class T>
   void Drives(const Arguments<T>& in, DriveValues<T> out) const {

@@ -327,8 +327,28 @@ class BlockCheck {
     return found;
   }
 
+  /// Two links of equal length fold onto each other in one assembly mode and not in another: that
+  /// is a choice to be studied, no fault of the geometry.
+  [[nodiscard]] bool RegularInAnotherMode(const std::vector<VectorXd>& reached) {
+    const std::vector<double> chosen = mechanism_.modes;
+    bool regular = false;
+    for (std::size_t signs = 1; signs < (std::size_t{1} << chosen.size()) && !regular; ++signs) {
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        mechanism_.modes[i] = ((signs >> i) & 1U) == 0 ? chosen[i] : -chosen[i];
+      }
+      regular = std::any_of(reached.begin(), reached.end(), [&](const VectorXd& x) {
+        const MatrixXd A = ScaledA(x);
+        return A.allFinite() && A.rows() == A.cols() &&
+               ScaleJacobians(mechanism_, A, MatrixXd()).A.jacobiSvd().singularValues().minCoeff() >
+                   kNothing;
+      });
+    }
+    mechanism_.modes = chosen;
+    return regular;
+  }
+
   void FindSingularEverywhere(const std::vector<VectorXd>& reached) {
-    if (reached.size() < 4) return;
+    if (reached.size() < 4 || RegularInAnotherMode(reached)) return;
     std::vector<MatrixXd> scaled;
     for (const VectorXd& x : reached) {
       const MatrixXd A = ScaledA(x);
@@ -379,7 +399,7 @@ class BlockCheck {
   }
 
   const Model& model_;
-  const MechanismModel& mechanism_;
+  MechanismModel mechanism_;
   const layout::Block& block_;
   std::vector<Element> elements_;
   VectorXd theta_;

@@ -82,8 +82,7 @@ class ForwardSolver {
       open = open && Less(T(0.0), T(trace.first_det * trace.last_det));
       Vector<T> step = lu.Solve(g);
       const T newton = scale.Length(step);
-      const T floor = scale.Length(lu.Solve(scale.Noise()));
-      if (round > 0) open = open && (Less(newton, length) || Less(newton, floor));
+      if (round > 0) open = open && (Less(newton, length) || scale.IsRounding(g));
       length = newton;
       Subtract(at, step);
       Condition chord = open;
@@ -91,11 +90,11 @@ class ForwardSolver {
         equations_.Closure(at, q, g);
         step = lu.Solve(g);
         const T next = scale.Length(step);
-        // In words: next <= length / 4, or nothing is left but rounding.
-        open = open && (Less(T(next * 4.0), length) || Less(next, floor));
+        const Condition rounding = scale.IsRounding(g);
+        open = open && (Less(T(next * 4.0), length) || rounding);
         Subtract(at, step);
         // The error left is about next * (next / length).
-        const Condition closed = Less(T(next * next), T(floor * length)) || Less(next, floor);
+        const Condition closed = rounding || Less(T(next * next), T(scale.size * length * 1e-15));
         proven = proven || (open && closed);
         open = open && !closed;
         chord = open && Less(T(next * 32.0), length);
@@ -126,6 +125,8 @@ class ForwardSolver {
       equations_.Drives(x, start);
       if (!Finite(start)) return plugin::ForwardOutcome::kStartOutOfReach;
       reached = Creep(x, start, q, Equations::kSeparable ? 0.25 : 1.0, trace);
+      if (reached < 1.0 && trace.first_det == 0.0) trace.first_det = DetA(x_start, start);
+      if (reached < 1.0 && Guess(x_start, q, trace, x)) reached = 1.0;
     }
     iterations = trace.iterations;
     return reached < 1.0 ? plugin::ForwardOutcome::kBlocked
@@ -182,6 +183,8 @@ class ForwardSolver {
   /// det A at the answer over det A at the start: below this, the pose on the other side of the
   /// singularity that has the same drives is looked for.
   static constexpr double kNearSingular = 0.3;
+  static constexpr int kWayPoints = 32;
+  static constexpr int kDescents = 40;
   static constexpr double kShort = 0.02;  ///< a way of this part of the size needs no such doubt
 
   /// Along the straight way of the drives, in steps that pass, the first of them `part` of it;
@@ -215,6 +218,66 @@ class ForwardSolver {
       }
     }
     return done;
+  }
+
+  [[nodiscard]] double DetA(const Vector<double>& x, const DriveVector<double>& q) const {
+    std::array<double, kSize * kSize> A{};
+    Vector<double> g{};
+    equations_.Linearise(x, q, g, A);
+    return LinearSystem<double, kSize>(A).Determinant();
+  }
+
+  /// Where the straight way of the drives leads nowhere: Newton's method with halved steps,
+  /// whatever way it takes, and then the proof along the straight way of the poses, on which the
+  /// inverse kinematics knows the drives: det A must keep its sign there.
+  bool Guess(const Vector<double>& x_start,
+             const DriveVector<double>& q,
+             Trace<double>& trace,
+             Vector<double>& x) const {
+    Vector<double> at = x_start;
+    if (!Descend(q, trace, at)) return false;
+    for (int part = 1; part <= kWayPoints; ++part) {
+      const double share = static_cast<double>(part) / kWayPoints;
+      Vector<double> between = at;
+      for (std::size_t i = 0; i < kSize; ++i) {
+        between[i] = x_start[i] + share * (at[i] - x_start[i]);
+      }
+      DriveVector<double> drives{};
+      equations_.Drives(between, drives);
+      if (!Finite(drives) || !(DetA(between, drives) * trace.first_det > 0.0)) return false;
+    }
+    x = at;
+    return true;
+  }
+
+  bool Descend(const DriveVector<double>& q, Trace<double>& trace, Vector<double>& x) const {
+    std::array<double, kSize * kSize> A{};
+    Vector<double> g{};
+    equations_.Linearise(x, q, g, A);
+    const StepScale<double, Equations> scale(A, x, q);
+    for (int count = 0; count < kDescents; ++count, ++trace.iterations) {
+      if (scale.IsRounding(g)) return true;
+      Vector<double> step = LinearSystem<double, kSize>(A).Solve(g);
+      const double before = Squares(g);
+      bool better = false;
+      for (int halving = 0; halving < 8 && !better; ++halving) {
+        Vector<double> trial = x;
+        Subtract(trial, step);
+        equations_.Closure(trial, q, g);
+        better = Squares(g) < before;
+        if (better) x = trial;
+        for (double& number : step) number *= 0.5;
+      }
+      if (!better) return scale.Length(step) < 1e-9 * scale.size;
+      equations_.Linearise(x, q, g, A);
+    }
+    return false;
+  }
+
+  [[nodiscard]] static double Squares(const Vector<double>& g) {
+    double sum = 0.0;
+    for (const double number : g) sum += number * number;
+    return sum;
   }
 
   [[nodiscard]] static bool Finite(const DriveVector<double>& q) {

@@ -66,11 +66,12 @@ class StepScale {
   static void Divide(Vector& vector, const T& by) {
     for (T& number : vector) number /= by;
   }
-  /// Loop residuals that are nothing but rounding.
-  [[nodiscard]] Vector Noise() const {
-    Vector noise;
-    noise.fill(size * row * T(1e-15));
-    return noise;
+  /// Whether loop residuals are nothing but rounding.
+  [[nodiscard]] auto IsRounding(const Vector& g) const {
+    using std::abs;
+    T largest(0.0);
+    for (const T& residual : g) Raise(largest, abs(residual));
+    return Less(largest, T(size * row * 2e-15));
   }
   static void Raise(T& size, const T& to) { size = Select(Less(size, to), to, size); }
 };
