@@ -185,6 +185,7 @@ class ForwardSolver {
   static constexpr double kNearSingular = 0.3;
   static constexpr int kWayPoints = 32;
   static constexpr int kDescents = 40;
+  static constexpr double kAround = 0.2;  ///< of the size, or rad: how far round the start
   static constexpr double kShort = 0.02;  ///< a way of this part of the size needs no such doubt
 
   /// Along the straight way of the drives, in steps that pass, the first of them `part` of it;
@@ -220,33 +221,52 @@ class ForwardSolver {
     return done;
   }
 
-  [[nodiscard]] double DetA(const Vector<double>& x, const DriveVector<double>& q) const {
+  [[nodiscard]] std::array<double, kSize * kSize> At(const Vector<double>& x,
+                                                     const DriveVector<double>& q) const {
     std::array<double, kSize * kSize> A{};
     Vector<double> g{};
     equations_.Linearise(x, q, g, A);
-    return LinearSystem<double, kSize>(A).Determinant();
+    return A;
+  }
+  [[nodiscard]] double DetA(const Vector<double>& x, const DriveVector<double>& q) const {
+    return LinearSystem<double, kSize>(At(x, q)).Determinant();
   }
 
-  /// Where the straight way of the drives leads nowhere: Newton's method with halved steps,
-  /// whatever way it takes, and then the proof along the straight way of the poses, on which the
-  /// inverse kinematics knows the drives: det A must keep its sign there.
+  /// Where the straight way of the drives leads nowhere: Newton's method with halved steps from
+  /// here and from around the start, whatever way it takes, and then the proof along the straight
+  /// way of the poses, on which the inverse kinematics knows the drives: det A must keep its sign
+  /// there.
   bool Guess(const Vector<double>& x_start,
              const DriveVector<double>& q,
              Trace<double>& trace,
              Vector<double>& x) const {
-    Vector<double> at = x_start;
-    if (!Descend(q, trace, at)) return false;
+    const StepScale<double, Equations> scale(At(x_start, q), x_start, q);
+    for (std::size_t seed = 0; seed < 2 * kSize + 2; ++seed) {
+      Vector<double> at = seed == 0 ? x : x_start;
+      if (seed > 1) {
+        const std::size_t i = (seed - 2) / 2;
+        const double far = kAround * (IsRotaryLetter(Equations::kLetters[i]) ? 1.0 : scale.size);
+        at[i] += seed % 2 == 0 ? far : -far;
+      }
+      if (Descend(q, trace, at) && SameSide(x_start, at, trace.first_det)) {
+        x = at;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool SameSide(const Vector<double>& from,
+                              const Vector<double>& to,
+                              double side) const {
     for (int part = 1; part <= kWayPoints; ++part) {
       const double share = static_cast<double>(part) / kWayPoints;
-      Vector<double> between = at;
-      for (std::size_t i = 0; i < kSize; ++i) {
-        between[i] = x_start[i] + share * (at[i] - x_start[i]);
-      }
+      Vector<double> between = to;
+      for (std::size_t i = 0; i < kSize; ++i) between[i] = from[i] + share * (to[i] - from[i]);
       DriveVector<double> drives{};
       equations_.Drives(between, drives);
-      if (!Finite(drives) || !(DetA(between, drives) * trace.first_det > 0.0)) return false;
+      if (!Finite(drives) || !(DetA(between, drives) * side > 0.0)) return false;
     }
-    x = at;
     return true;
   }
 
