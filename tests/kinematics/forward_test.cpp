@@ -147,8 +147,7 @@ TEST(ForwardNeverLies, WithoutLimitsThePoseOnTheStartsSideIsTheAnswer) {
     box.lower[i] = -15.0;
     box.upper[i] = 15.0;
   }
-  const Sized::Count count =
-      Sized("linuxcnc_genhexkins", 1.0, box).FromHome(50'000, 50'000, false);
+  const Sized::Count count = Sized("linuxcnc_genhexkins", 1.0, box).FromHome(50'000, 50'000, false);
   EXPECT_EQ(count.right, 50'000U) << "seed " << tests::Seed();
 }
 

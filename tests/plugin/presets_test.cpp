@@ -72,7 +72,8 @@ sources = ["SO"]
   EXPECT_FALSE(small->FindParameter("foot")->fixed);
   EXPECT_EQ(small->modes[0].default_sign, -1);
   EXPECT_EQ(small->modes[1].default_sign, -1) << "the base's own";
-  EXPECT_THAT(small->capabilities, testing::ElementsAre("example.translation")) << "kept from the base";
+  EXPECT_THAT(small->capabilities, testing::ElementsAre("example.translation"))
+      << "kept from the base";
   EXPECT_THAT(small->sources, testing::ElementsAre("SO"));
   EXPECT_TRUE(registry.Find("delta")->FindParameter("arm")->default_value.empty())
       << "the base is untouched";

@@ -145,8 +145,12 @@ TEST(Registry, ReadsAHundredSidecarsInAMoment) {
   const std::string pyramid{std::istreambuf_iterator<char>(file), {}};
   for (int i = 0; i < 100; ++i) {
     std::string text = pyramid;
-    for (const std::string word :
-         {"pyramid_by_angle\"", "\"pyramid\"", "linear_delta", "triglide", "v100_head", "org.kompono.pyramid"}) {
+    for (const std::string word : {"pyramid_by_angle\"",
+                                   "\"pyramid\"",
+                                   "linear_delta",
+                                   "triglide",
+                                   "v100_head",
+                                   "org.kompono.pyramid"}) {
       const bool quoted = word.back() == '"';
       const std::string renamed = (quoted ? word.substr(0, word.size() - 1) : word) + "_" +
                                   std::to_string(i) + (quoted ? "\"" : "");
