@@ -309,7 +309,7 @@ void FormulaTape::Evaluate(std::span<const Interval> at, bool slopes, Values& va
     if (varied_[i] < 0) continue;
     Slope& own = values[static_cast<std::size_t>(varied_[i])];
     own = Slope(at[i]);
-    own.by[i] = Interval(1.0);
+    if (i < Slope::kDirections) own.by[i] = Interval(1.0);
   }
   for (const Slot slot : active_) {
     const Instruction& instruction = instructions_[static_cast<std::size_t>(slot)];

@@ -20,7 +20,7 @@ class FormulaTape {
  public:
   using Slot = std::int32_t;
 
-  /// The varied coordinate `direction` (0 … 2).
+  /// The varied coordinate `direction`; slopes are known by the first three only.
   [[nodiscard]] Slot Varied(std::size_t direction);
   [[nodiscard]] Slot Constant(double value);
   [[nodiscard]] Slot Negative(Slot a);

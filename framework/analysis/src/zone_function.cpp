@@ -390,6 +390,7 @@ ZoneFunction::Judged ZoneFunction::Judge(std::span<const double> lower,
   double left_out = 0.0;
   double most = 1.0;
   int cause = -1;
+  bool singular = false;
   std::fill(values.all_reached.begin(), values.all_reached.end(), 1);
   for (std::size_t c = 0; c < state_->constraints.size(); ++c) {
     const Constraint& constraint = state_->constraints[c];
@@ -409,6 +410,7 @@ ZoneFunction::Judged ZoneFunction::Judge(std::span<const double> lower,
     }
     if (outcome.kept) continue;
     ++undecided;
+    singular = singular || constraint.kind == Kind::kRegular;
     left_out += 1.0 - outcome.share.least;
     if (outcome.share.most < most || cause < 0) {
       most = std::min(most, outcome.share.most);
@@ -419,7 +421,8 @@ ZoneFunction::Judged ZoneFunction::Judge(std::span<const double> lower,
   return {.verdict = Verdict::kBoundary,
           .least = std::max(0.0, 1.0 - left_out),
           .most = most,
-          .cause = cause};
+          .cause = cause,
+          .singular = singular};
 }
 
 bool ZoneFunction::Inside(std::span<const double> at, Scratch& scratch) const {

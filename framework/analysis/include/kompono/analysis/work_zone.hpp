@@ -72,6 +72,7 @@ class ZoneFunction {
     Verdict verdict = Verdict::kBoundary;
     double least = 0.0, most = 1.0;  ///< share of the box that is inside
     int cause = -1;                  ///< the constraint that matters most; -1 if inside
+    bool singular = false;           ///< det A may vanish in the box, as far as it is reached
   };
   /// One thread's memory.
   class Scratch {
