@@ -149,14 +149,9 @@ WorkZone Pave(const ZoneFunction& function,
   return zone;
 }
 
-/// The box around all cells that have a part inside, or may have.
-void FindBounds(WorkZone& zone, bool certain) {
-  zone.lower.clear();
-  zone.upper.clear();
-  const auto counts = [certain](const ZoneCell& cell) { return !certain || cell.least > 0.0F; };
-  if (std::none_of(zone.cells.begin(), zone.cells.end(), counts)) return;
-  zone.lower = zone.box.upper;
-  zone.upper = zone.box.lower;
+/// Widens zone.lower and zone.upper to the cells that `counts` takes.
+template <class Counts>
+void Widen(WorkZone& zone, const Counts& counts) {
   for (const ZoneCell& cell : zone.cells) {
     if (!counts(cell)) continue;
     for (std::size_t i = 0; i < zone.box.dimension(); ++i) {
@@ -165,6 +160,34 @@ void FindBounds(WorkZone& zone, bool certain) {
       zone.upper[i] = std::max(zone.upper[i], edge[1]);
     }
   }
+}
+
+/// The box around all cells that have a part inside, or may have. With `certain` those that only
+/// may do not count if they lie far from all that have: where reach ends in a corner, a few cells
+/// can stay open for ever.
+void FindBounds(WorkZone& zone, bool certain) {
+  zone.lower.clear();
+  zone.upper.clear();
+  const auto known = [](const ZoneCell& cell) { return cell.least > 0.0F; };
+  const bool any = std::any_of(zone.cells.begin(), zone.cells.end(), known);
+  if (zone.cells.empty() || (certain && !any)) return;
+  zone.lower = zone.box.upper;
+  zone.upper = zone.box.lower;
+  if (!certain || !any) {
+    Widen(zone, [](const ZoneCell&) { return true; });
+    return;
+  }
+  Widen(zone, known);
+  const std::vector<double> lower = zone.lower;
+  const std::vector<double> upper = zone.upper;
+  Widen(zone, [&](const ZoneCell& cell) {
+    for (std::size_t i = 0; i < zone.box.dimension(); ++i) {
+      const std::array<double, 2> edge = zone.Edge(cell, i);
+      const double far = 0.25 * (upper[i] - lower[i]);
+      if (edge[0] < lower[i] - far || edge[1] > upper[i] + far) return false;
+    }
+    return true;
+  });
 }
 
 /// What the boundary is made of: each boundary cell counts with the extent of its face, and so do

@@ -46,8 +46,8 @@ struct WorkZone {
   std::vector<ZoneCell> cells;  ///< inside or on the boundary; outside are all others
   std::vector<std::string> constraints;
   std::vector<double> shares;  ///< per constraint: part of the boundary's extent it makes up, sum 1
-  std::vector<double> lower, upper;  ///< box around all cells of which a part is certainly inside;
-                                     ///< empty if there is none
+  /// Box around the zone, a cell wider at most; empty if nothing is certainly inside.
+  std::vector<double> lower, upper;
   /// Per varied coordinate: whether the zone touches the searched box's lower and upper end.
   std::vector<std::array<bool, 2>> touches;
   std::uint64_t judged = 0;  ///< cells in all
