@@ -10,6 +10,7 @@
 
 #include "kompono/exporting/drawing.hpp"
 #include "kompono/exporting/formulas.hpp"
+#include "kompono/exporting/mjcf.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -21,7 +22,9 @@ constexpr const char* kExamples =
     "  kompono export machine.toml --to latex --digits 4            for a paper\n"
     "  kompono export machine.toml --to c -o kinematics.c           for a controller\n"
     "  kompono export machine.toml --to formula --drive struts.q1   one drive only\n"
-    "  kompono export machine.toml --to svg -o machine.svg          a drawing of it at home";
+    "  kompono export machine.toml --to svg -o machine.svg          a drawing of it at home\n"
+    "  kompono export machine.toml --to mjcf -o machine.xml         its bodies and joints, for "
+    "MuJoCo";
 
 struct Options {
   std::string file, to, out;
@@ -68,6 +71,11 @@ struct Exported {
 Parsed<Exported> Export(const Machine& machine, const Options& options) {
   if (options.to == "svg")
     return Exported{exporting::DrawSvg(machine, machine.home(), machine.nominal()), nullptr};
+  if (options.to == "mjcf") {
+    Parsed<std::string> model = exporting::Mjcf(machine, machine.nominal());
+    if (!model) return tl::unexpected(std::move(model.error()));
+    return Exported{std::move(*model), nullptr};
+  }
   Diagnostics problems;
   const exporting::FormulaOptions wanted{.digits = options.digits,
                                          .expand = !options.no_expand,
@@ -115,10 +123,10 @@ void AddExport(CLI::App& root, Session& session) {
   const auto options = std::make_shared<Options>();
   session.Hint(command->add_option("FILE", options->file, "Layout")->required(),
                ValueHint::Kind::kFile);
-  session.Choices(command->add_option("--to", options->to, "formula, latex, c or svg")
+  session.Choices(command->add_option("--to", options->to, "formula, latex, c, svg or mjcf")
                       ->type_name("FORMAT")
                       ->required(),
-                  {"formula", "latex", "c", "svg"});
+                  {"formula", "latex", "c", "svg", "mjcf"});
   command->add_option("--digits", options->digits, "Significant digits in formula and latex (6)")
       ->type_name("N")
       ->check(CLI::Range(1, 17));
