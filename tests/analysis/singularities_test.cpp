@@ -117,8 +117,6 @@ TEST(SingularitiesOnPath, OfTheLambdaWithEqualLinks) {
   ASSERT_EQ(plus.size(), 1U);
   EXPECT_EQ(plus[0].type, 3) << "q1 = q2 only at y = L1, where both reaches end";
   EXPECT_NEAR(plus[0].z[1], 1000.0, 1e-5);
-  // With the other mode the sliders coincide everywhere: no machine.
-  EXPECT_THROW(static_cast<void>(Lambda(500, 500, '-')), std::runtime_error);
 }
 
 TEST(SingularitiesOnPath, OfAHexapodThatTurnsAboutItsAxis) {
