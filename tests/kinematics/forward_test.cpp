@@ -4,6 +4,8 @@
 #include "shipped_machines.hpp"
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -15,6 +17,12 @@ using kinematics::Machine;
 using plugin::ForwardOutcome;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// How many poses: a million where it is asked for, fewer every day.
+std::size_t Poses(std::size_t every_day) {
+  const char* const given = std::getenv("KOMPONO_FORWARD_POSES");
+  return given != nullptr ? std::strtoul(given, nullptr, 10) : every_day;
+}
 
 struct Box {
   std::vector<double> lower, upper, home;
@@ -113,6 +121,7 @@ class Sized {
       }
       ++(error < 1e-7 ? out.right : out.wrong);
     }
+    std::printf("%zu right, %zu wrong, %zu refused\n", out.right, out.wrong, out.refused);
     return out;
   }
 
@@ -127,11 +136,29 @@ const Box kHexapodBox{{-6, -6, 16, -35, -35, -35}, {6, 6, 26, 35, 35, 35}, {0, 0
 TEST(ForwardNeverLies, OnAHexapodOfAnySizeTiltedTo35Degrees) {
   for (const double size : {1.0, 25.4, 0.0254}) {  // of LinuxCNC's genhexkins, as if inch or metre
     const Sized hexapod("linuxcnc_genhexkins", size, kHexapodBox);
-    const Sized::Count count = hexapod.FromHome(100'000, 100'000, true);
+    const Sized::Count count = hexapod.FromHome(Poses(100'000), 100'000, true);
     EXPECT_EQ(count.wrong, 0U) << "seed " << tests::Seed();
     // 0.05 % of the poses lie beyond a singularity from home, and as many have such a pose as twin.
-    EXPECT_LE(count.refused, 150U) << "seed " << tests::Seed();
+    EXPECT_LE(count.refused, Poses(100'000) * 15 / 10'000) << "seed " << tests::Seed();
   }
+}
+
+TEST(ForwardNeverLies, OnASixStrutLatheInItsRanges) {
+  const Box box{{-60, -80, -300, -15, -15, -15}, {60, 60, 300, 15, 15, 15}, {0, 0, 0, 0, 0, 0}};
+  for (const double size : {1.0, 0.001}) {
+    const Sized::Count count =
+        Sized("kdd_six_strut_lathe", size, box).FromHome(Poses(50'000), 50'000, true);
+    EXPECT_EQ(count.wrong, 0U) << "seed " << tests::Seed();
+    EXPECT_LE(count.refused, Poses(50'000) / 1000) << "seed " << tests::Seed();
+  }
+}
+
+TEST(ForwardNeverLies, OnThePentapodOfLinuxCncsSimulation) {
+  const Box box{{-120, -120, -120, -15, -20}, {120, 120, 120, 15, 20}, {0, 0, 0, 0, 0}};
+  const Sized::Count count =
+      Sized("linuxcnc_pentakins_simconfig", 1.0, box).FromHome(Poses(50'000), 50'000, true);
+  EXPECT_EQ(count.wrong, 0U) << "seed " << tests::Seed();
+  EXPECT_LE(count.refused, Poses(50'000) / 1000) << "seed " << tests::Seed();
 }
 
 TEST(ForwardNeverLies, OneByOneAsInPacks) {

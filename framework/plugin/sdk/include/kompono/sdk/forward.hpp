@@ -144,13 +144,14 @@ class ForwardSolver {
     if (Equations::kWorkingModes && !OnWorkingMode(x, q)) {
       return plugin::ForwardOutcome::kOtherMode;
     }
-    if (limits.lower.empty()) return plugin::ForwardOutcome::kProven;
     const Fold<Equations> fold(equations_, x, q);
     const double gone = fold.Distance(x_start, x);
     Vector<double> other{};
     if (gone > kShort * fold.size() &&
         std::abs(fold.Determinant()) < kNearSingular * std::abs(first_det) &&
-        fold.Cross(x, other) && fold.Distance(x, other) < gone && limits.Hold(other)) {
+        fold.Cross(x, other) && fold.Distance(x, other) < gone &&
+        (limits.lower.empty() ? fold.Distance(x_start, other) < kAsFar * gone
+                              : limits.Hold(other))) {
       return plugin::ForwardOutcome::kAmbiguous;
     }
     return plugin::ForwardOutcome::kProven;
@@ -186,6 +187,8 @@ class ForwardSolver {
   static constexpr int kWayPoints = 32;
   static constexpr int kDescents = 40;
   static constexpr double kAround = 0.2;  ///< of the size, or rad: how far round the start
+  /// Without limits: the other pose counts if it is hardly farther from the start.
+  static constexpr double kAsFar = 1.05;
   static constexpr double kShort = 0.02;  ///< a way of this part of the size needs no such doubt
 
   /// Along the straight way of the drives, in steps that pass, the first of them `part` of it;
