@@ -7,7 +7,7 @@
 namespace kompono::analysis {
 namespace {
 
-const Interval kUnknown{0.0, 1.0};  ///< a condition that holds in part of the box
+constexpr Interval kUnknown{0.0, 1.0};  ///< a condition that holds in part of the box
 
 constexpr int kFirstUnary = KOMPONO_NEGATE;
 

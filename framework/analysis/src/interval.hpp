@@ -20,7 +20,7 @@ struct Interval {
   Interval() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): numbers mix freely with intervals.
   Interval(double value) : lower(value), upper(value) {}
-  Interval(double from, double to) : lower(from), upper(to) {}
+  constexpr Interval(double from, double to) : lower(from), upper(to) {}
 
   [[nodiscard]] double Middle() const { return 0.5 * lower + 0.5 * upper; }
   [[nodiscard]] double Radius() const { return 0.5 * upper - 0.5 * lower; }
@@ -108,8 +108,9 @@ template <class F>
   const double last = std::floor((a.upper + slack) / std::numbers::pi);
   double lower = std::min(std::cos(a.lower), std::cos(a.upper));
   double upper = std::max(std::cos(a.lower), std::cos(a.upper));
-  for (double k = first; k <= last; k += 1.0) {
-    if (std::fmod(k, 2.0) == 0.0) {
+  const int multiples = static_cast<int>(last - first) + 1;  // at most 3 in less than a turn
+  for (int k = 0; k < multiples; ++k) {
+    if (std::fmod(first + k, 2.0) == 0.0) {
       upper = 1.0;
     } else {
       lower = -1.0;

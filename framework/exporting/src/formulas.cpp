@@ -55,7 +55,8 @@ std::vector<std::string> VariableNames(const kinematics::Machine& machine) {
     std::string name = short_name(coordinate);
     if (uses[name] > 1) {
       const std::size_t dot = coordinate.name.rfind('.');
-      name = (dot == std::string::npos ? "axis" : coordinate.name.substr(0, dot)) + "_" + name;
+      name.insert(0, "_").insert(
+          0, dot == std::string::npos ? std::string("axis") : coordinate.name.substr(0, dot));
     }
     names.push_back(name);
   }
@@ -65,7 +66,7 @@ std::vector<std::string> VariableNames(const kinematics::Machine& machine) {
 Expression Finish(const Expression& raw,
                   const FormulaOptions& options,
                   std::size_t variable_count) {
-  const Expression simple = raw.Simplify();
+  Expression simple = raw.Simplify();
   if (!options.expand) return simple;
   std::vector<int> variables(variable_count);
   std::iota(variables.begin(), variables.end(), 0);

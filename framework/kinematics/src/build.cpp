@@ -78,7 +78,7 @@ class ModelBuilder {
     for (const plugin::ParameterDescription& parameter : description.parameters) {
       for (const std::string& number : parameter.NumberNames()) {
         model_->parameters.push_back(
-            {.name = name + "." + number,
+            {.name = fmt::format("{}.{}", name, number),
              .nominal = values.at(at++),
              .tolerance = parameter.tolerance.value_or(0.0) * parameter.ToInternal(),
              .angle = parameter.angle(),

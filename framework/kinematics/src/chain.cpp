@@ -201,6 +201,7 @@ Pose<double> ChainPose(const Machine::Impl& impl,
   for (const Factor& factor : impl.factors) {
     FactorPose next = PoseOfFactor(impl, factor, z, theta, wanted);
     if (factor.inverse) next = Invert(std::move(next));
+    if (!wanted) next.twists.clear();
     for (const TwistEntry& entry : next.twists) {
       auto& table =
           entry.of == Of::kCoordinate ? derivatives->by_coordinates : derivatives->by_parameters;

@@ -187,6 +187,7 @@ class BlockCheck {
       if (!undefined) continue;
       found = true;
       std::vector<const Element*> causes;
+      causes.reserve(elements_.size());
       for (const Element& element : elements_) {
         VectorXd moved = theta_;
         for (int k = 0; k < element.numbers; ++k) {
@@ -202,6 +203,7 @@ class BlockCheck {
 
   void ComplainOfUndefined(Eigen::Index drive, const std::vector<const Element*>& causes) {
     std::vector<std::string> names;
+    names.reserve(causes.size());
     for (const Element* cause : causes) names.push_back(cause->Name());
     const bool coincide =
         causes.size() > 1 && std::all_of(causes.begin(), causes.end(), [&](const Element* cause) {
@@ -387,6 +389,7 @@ class BlockCheck {
     static_cast<void>(ScaledA(x, &by_parameters));
     const std::vector<const Element*> shared = Shared(by_parameters, leg, other);
     std::vector<std::string> names;
+    names.reserve(shared.size());
     for (const Element* element : shared) names.push_back(element->Name());
     std::string message = fmt::format("the legs of {} and {} of '{}' are one and the same",
                                       DriveName(leg),

@@ -2,6 +2,7 @@
 #include "kompono/layout/numbers.hpp"
 
 #include "number_places.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -85,7 +86,7 @@ class Collector {
                        .points = parameter.shape == plugin::ParameterShape::kPoints,
                        .numbers = {}};
       for (const std::string& name : parameter.NumberNames()) {
-        place.numbers.push_back({.name = owner + "." + name,
+        place.numbers.push_back({.name = fmt::format("{}.{}", owner, name),
                                  .other_names = {},
                                  .value = at < values.size() ? values[at] : 0.0,
                                  .angle = parameter.angle(),
@@ -105,8 +106,8 @@ class Collector {
       ValuePlace place{.path = Below(path, key), .columns = 3, .points = false, .numbers = {}};
       for (std::size_t i = 0; i < 3; ++i) {
         const std::string letter(1, (angle ? "abc" : "xyz")[i]);
-        std::string brief = owner + "." + letter;
-        std::string full = owner + "." + key + "." + letter;
+        std::string brief = fmt::format("{}.{}", owner, letter);
+        std::string full = fmt::format("{}.{}.{}", owner, key, letter);
         if (!short_names) std::swap(brief, full);
         place.numbers.push_back(
             {.name = std::move(brief),

@@ -51,6 +51,7 @@ std::vector<std::string> PlainStrings(TableReader& table, std::string_view key) 
 /// Words of the vocabulary, or a plugin's own, which have a dot.
 std::vector<std::string> ReadCapabilities(TableReader& table) {
   std::vector<std::string> known;
+  known.reserve(std::size(kCapabilityWords));
   for (const CapabilityWord& word : kCapabilityWords) known.emplace_back(word.word);
   std::vector<std::string> out;
   for (Placed<std::string>& word : table.Strings("capabilities")) {

@@ -28,16 +28,18 @@ struct Pose {
 
   /// Rows of [R | p], 12 numbers: the form in which poses cross library boundaries.
   void Write(std::span<T> rows) const {
+    std::size_t at = 0;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) rows[static_cast<std::size_t>(4 * i + j)] = R(i, j);
-      rows[static_cast<std::size_t>(4 * i + 3)] = p[i];
+      for (int j = 0; j < 3; ++j) rows[at++] = R(i, j);
+      rows[at++] = p[i];
     }
   }
   [[nodiscard]] static Pose Read(std::span<const T> rows) {
     Pose X;
+    std::size_t at = 0;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) X.R(i, j) = rows[static_cast<std::size_t>(4 * i + j)];
-      X.p[i] = rows[static_cast<std::size_t>(4 * i + 3)];
+      for (int j = 0; j < 3; ++j) X.R(i, j) = rows[at++];
+      X.p[i] = rows[at++];
     }
     return X;
   }

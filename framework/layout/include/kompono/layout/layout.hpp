@@ -48,8 +48,8 @@ struct Block {
   /// Local coordinate i of the module is sign * the formula's letter; "YZBC" of the formula may be
   /// "XYAB" of the module.
   struct LetterMap {
-    char formula_letter;  ///< the letter (of the group's axis) this local coordinate realises
-    std::string axis;     ///< the axis' name in the formula, "Z" or "X4"
+    char formula_letter = 'X';  ///< the letter (of the group's axis) this local coordinate realises
+    std::string axis;           ///< the axis' name in the formula, "Z" or "X4"
     int sign = 1;
   };
   std::vector<LetterMap> letters;  ///< one per local coordinate

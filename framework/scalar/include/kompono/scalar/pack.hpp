@@ -61,7 +61,7 @@ class PackMask {
 
  private:
   friend class Pack;
-  Part part_[kParts];
+  Part part_[kParts]{};
 };
 
 class Pack {
@@ -69,7 +69,7 @@ class Pack {
   using Part = std::experimental::native_simd<double>;
   static constexpr std::size_t kParts = kPackLanes / Part::size();
 
-  Pack() = default;  ///< uninitialised, like a double
+  Pack() = default;  ///< zero
   // NOLINTNEXTLINE(google-explicit-constructor): numbers mix freely with packs in formulas.
   [[gnu::always_inline]] Pack(double value) {
     for (Part& part : part_) part = value;
@@ -171,7 +171,7 @@ class Pack {
     return out;
   }
 
-  Part part_[kParts];
+  Part part_[kParts]{};
 };
 
 }  // namespace kompono
@@ -184,6 +184,7 @@ struct NumTraits<kompono::Pack> : GenericNumTraits<kompono::Pack> {
   using NonInteger = kompono::Pack;
   using Nested = kompono::Pack;
   using Literal = double;
+  // NOLINTBEGIN(readability-identifier-naming): Eigen's names
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -193,13 +194,14 @@ struct NumTraits<kompono::Pack> : GenericNumTraits<kompono::Pack> {
     AddCost = 4,
     MulCost = 4
   };
+  // NOLINTEND(readability-identifier-naming)
 };
 
 /// Eigen would ask for the alignment of its own largest packets, which is less than a Pack needs
 /// and therefore an error to clang. A Pack aligns itself.
 template <int Size>
 requires(Size != Dynamic) struct internal::compute_default_alignment<kompono::Pack, Size> {
-  enum { value = 0 };
+  enum { value = 0 };  // NOLINT(readability-identifier-naming): Eigen's name
 };
 
 }  // namespace Eigen

@@ -192,6 +192,7 @@ class AutodiffMechanism : public plugin::Mechanism {
   [[nodiscard]] plugin::Status Run(plugin::Quantity quantity,
                                    const Arguments<T>& in,
                                    std::span<T> out) const {
+    // NOLINTNEXTLINE(bugprone-branch-clone): what a module leaves out is alike
     switch (quantity) {
       case plugin::Quantity::kPlatform:
         derived().Platform(in).Write(out);
@@ -405,6 +406,7 @@ class AutodiffMechanism : public plugin::Mechanism {
     const plugin::Status status = Run<J>(quantity, workspace.View(), std::span<J>(values));
     if (status != plugin::Status::kOk) return status;
     std::vector<Symbol> roots;
+    roots.reserve(values.size() * (1 + Count(Nx())));
     for (const J& value : values) roots.push_back(value.a);
     for (const J& value : values) {
       for (int i = 0; i < Nx(); ++i) roots.push_back(value.v[i]);

@@ -41,7 +41,7 @@ void DestroyModule(void* module) {
 }
 
 template <class Module>
-constexpr KomponoModule ModuleEntry(const char* id) {
+constexpr KomponoModule ModuleEntry(const char* id) noexcept {
   return {id,
           std::is_base_of_v<plugin::Mechanism, Module> ? KOMPONO_MECHANISM_INTERFACE
                                                        : KOMPONO_UNIT_INTERFACE,
@@ -49,7 +49,7 @@ constexpr KomponoModule ModuleEntry(const char* id) {
           &DestroyModule<Module>};
 }
 
-constexpr KomponoToolchain ThisToolchain() {
+constexpr KomponoToolchain ThisToolchain() noexcept {
   return {static_cast<uint32_t>(sizeof(void*)),
           _GLIBCXX_USE_CXX11_ABI,
 #ifdef _GLIBCXX_DEBUG
