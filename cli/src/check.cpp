@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// kompono check: every fault of every file. No plugin code runs, except for measurements, whose
-// units are judged by what the machine predicts.
+// kompono check: every fault of every file. Plugin code runs for the geometry of layouts whose text
+// is good, unless --no-code is given, and for measurements, whose units are judged by what the
+// machine predicts.
 #include "codes.hpp"
 #include "files.hpp"
 #include "session.hpp"
@@ -24,11 +25,13 @@ constexpr const char* kExamples =
     "  kompono check machine.toml                             a layout\n"
     "  kompono check layouts/machines/*.toml                  all of them, all faults in one run\n"
     "  kompono check --layout machine.toml points.csv         measurements of that machine\n"
+    "  kompono check machine.toml --no-code                   the text only\n"
     "  kompono check plugins/lambda/plugin.toml               a plugin's sidecar";
 
 struct Options {
   std::vector<std::string> files;
   std::string layout;
+  bool no_code = false;
 };
 
 enum class Kind { kUnknown, kLayout, kMeasurements, kSidecar };
@@ -91,8 +94,19 @@ void Take(const Parsed<T>& parsed, Diagnostics& diagnostics) {
   if (!parsed) diagnostics.insert(diagnostics.end(), parsed.error().begin(), parsed.error().end());
 }
 
+/// The text, and if that is good what the plugins say of the geometry.
+void JudgeLayout(Session& session, std::string_view text, bool run_code, Verdict& verdict) {
+  Parsed<layout::Layout> layout =
+      layout::ParseLayout(text, verdict.file, session.registry(), &verdict.diagnostics);
+  Take(layout, verdict.diagnostics);
+  if (layout && run_code) {
+    Take(kinematics::Machine::Build(std::move(*layout), session.registry()), verdict.diagnostics);
+  }
+}
+
 Verdict Judge(Session& session,
               const std::string& file,
+              bool run_code,
               const std::optional<kinematics::Machine>& machine) {
   Verdict verdict{.file = file};
   const Parsed<std::string> text = ReadWhole(file);
@@ -104,8 +118,7 @@ Verdict Judge(Session& session,
   verdict.kind = KindOf(file, *text);
   switch (verdict.kind) {
     case Kind::kLayout:
-      Take(layout::ParseLayout(*text, file, session.registry(), &verdict.diagnostics),
-           verdict.diagnostics);
+      JudgeLayout(session, *text, run_code, verdict);
       break;
     case Kind::kSidecar:
       Take(plugin::ParseSidecar(*text, file), verdict.diagnostics);
@@ -167,7 +180,8 @@ ExitCode Run(Session& session, const Options& options) {
     if (!machine) return code;
   }
   std::vector<Verdict> verdicts;
-  for (const std::string& file : options.files) verdicts.push_back(Judge(session, file, machine));
+  for (const std::string& file : options.files)
+    verdicts.push_back(Judge(session, file, !options.no_code, machine));
   if (session.json) {
     PrintJson(session.console, verdicts);
   } else {
@@ -196,6 +210,8 @@ void AddCheck(CLI::App& root, Session& session) {
               "--layout", options->layout, "Layout of the machine that the measurements are of")
           ->type_name("FILE"),
       ValueHint::Kind::kFile);
+  command->add_flag(
+      "--no-code", options->no_code, "Run no plugin code: the geometry of layouts is not judged");
   session.OnRun(command, [&session, options] { return Run(session, *options); });
 }
 

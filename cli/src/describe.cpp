@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // kompono describe: what a layout is made of and what it can move.
+#include "freedoms.hpp"
 #include "machine_sheet.hpp"
 #include "session.hpp"
 #include "text.hpp"
@@ -23,7 +24,8 @@ using nlohmann::ordered_json;
 
 constexpr const char* kExamples =
     "  kompono describe machine.toml            coordinates, drives, mobility, abilities, home\n"
-    "  kompono describe machine.toml --json     the same for programs";
+    "  kompono describe machine.toml --json     the same for programs\n"
+    "  kompono describe machine.toml --freedoms which motions its struts can meet";
 
 /// What is computed once and printed in two ways.
 struct Sheet {
@@ -267,12 +269,18 @@ void Print(Console& console, const Sheet& sheet) {
 
 struct Options {
   std::string file;
+  bool freedoms = false;
+  std::optional<double> length_mm;
 };
 
 ExitCode Run(Session& session, const Options& options) {
   ExitCode code = ExitCode::kOk;
   const std::optional<Machine> machine = session.ReadMachine(options.file, code);
   if (!machine) return code;
+  if (options.freedoms || options.length_mm) {
+    PrintFreedoms(session, *machine, options.length_mm);
+    return ExitCode::kOk;
+  }
   const Sheet sheet = Describe(*machine, session.registry());
   if (session.json) {
     session.console.Json(SheetJson(sheet));
@@ -290,6 +298,13 @@ void AddDescribe(CLI::App& root, Session& session) {
   const auto options = std::make_shared<Options>();
   session.Hint(command->add_option("FILE", options->file, "Layout")->required(),
                ValueHint::Kind::kFile);
+  command->add_flag(
+      "--freedoms",
+      options->freedoms,
+      "Instead: every choice of as many motions as struts, with its condition number at home");
+  command
+      ->add_option("--radian", options->length_mm, "With --freedoms: what a radian counts, in mm")
+      ->check(CLI::PositiveNumber);
   session.OnRun(command, [&session, options] { return Run(session, *options); });
 }
 

@@ -92,5 +92,14 @@ TEST_F(Check, TheSchemaIsJsonWithTheInstalledModules) {
   EXPECT_EQ(Run({"schema", "--json"}).out, outcome.out);
 }
 
+TEST_F(Check, JudgesTheGeometryOfAGoodTextUnlessNoCodeMayRun) {
+  const std::string file = Source("layouts/bad/geometry_rail_without_length.toml");
+  const Outcome judged = Run({"check", file});
+  EXPECT_EQ(judged.code, 1);
+  EXPECT_THAT(judged.err, HasSubstr("geometry_rail_without_length.toml:12:28: error: "));
+  EXPECT_THAT(judged.err, HasSubstr("[E0703]"));
+  EXPECT_EQ(Run({"check", "--no-code", file}).code, 0);
+}
+
 }  // namespace
 }  // namespace kompono::cli_test

@@ -114,5 +114,20 @@ TEST_F(Describe, WorksForEveryMachineOfTheTree) {
   }
 }
 
+TEST_F(Describe, FreedomsOfFourStruts) {
+  const nlohmann::json table =
+      Json({"describe", Machine("kdd_four_strut_lathe"), "--freedoms", "--radian", "150"});
+  ASSERT_EQ(table["mechanisms"].size(), 1U);
+  const nlohmann::json& choices = table["mechanisms"][0]["choices"];
+  ASSERT_EQ(choices.size(), 15U);
+  EXPECT_EQ(choices[0]["letters"], "YZBC");
+  EXPECT_NEAR(choices[0]["condition"].get<double>(), 350.0 / 300.0, 1e-9);
+  EXPECT_TRUE(choices[14]["condition"].is_null());
+  const Outcome text = Run({"describe", Machine("kdd_four_strut_lathe"), "--freedoms"});
+  EXPECT_THAT(text.out, HasSubstr("YZBC"));
+  EXPECT_THAT(text.out, HasSubstr("singular"));
+  EXPECT_EQ(Run({"describe", Machine("knee_mill"), "--radian", "0"}).code, 2);
+}
+
 }  // namespace
 }  // namespace kompono::cli_test

@@ -77,7 +77,7 @@ class BlockCheck {
     const bool home_reached = !Reached({home_}).empty();
     if (!home_reached && !home_given_ && reached.empty())
       reached = Reached(Probes(kFarProbes, 1.5));
-    if (!home_reached && (home_given_ || reached.empty())) return ComplainOfReach(reached.empty());
+    if (!home_reached && (home_given_ || reached.empty())) return ComplainOfReach();
     if (FindLegWithoutLength()) return;
     FindSingularEverywhere(reached);
   }
@@ -225,12 +225,12 @@ class BlockCheck {
   }
 
   /// Home, or everything, is out of reach; says which length would do, where one alone can.
-  void ComplainOfReach(bool everywhere) {
+  void ComplainOfReach() {
     const Evaluation reach =
         At(plugin::Quantity::kReach, home_, VectorXd(), theta_, {.by_parameters = true});
     Eigen::Index drive = 0;
     reach.values.minCoeff(&drive);
-    const std::string where = everywhere ? "any pose that was tried" : "its home";
+    const std::string where = home_given_ ? "its home" : "any pose near the middle";
     const Element* length = nullptr;
     double best = 0.0;
     for (const Element& element : elements_) {
@@ -281,7 +281,8 @@ class BlockCheck {
     return high;
   }
 
-  [[nodiscard]] MatrixXd ScaledA(const VectorXd& x, MatrixXd* by_parameters = nullptr) const {
+  [[nodiscard]] MatrixXd ClosureByCoordinates(const VectorXd& x,
+                                              MatrixXd* by_parameters = nullptr) const {
     const VectorXd q = At(plugin::Quantity::kDrives, x, VectorXd(), theta_).values;
     const Evaluation g = At(plugin::Quantity::kClosure,
                             x,
@@ -314,7 +315,7 @@ class BlockCheck {
 
   /// A pod whose two joints coincide at home: its closure does not notice the platform.
   bool FindLegWithoutLength() {
-    const MatrixXd A = ScaledA(home_);
+    const MatrixXd A = ClosureByCoordinates(home_);
     bool found = false;
     for (Eigen::Index i = 0; i < A.rows() && home_given_; ++i) {
       if (!(A.row(i).norm() <= kNothing * size_)) continue;
@@ -329,80 +330,97 @@ class BlockCheck {
     return found;
   }
 
-  /// Two links of equal length fold onto each other in one assembly mode and not in another: that
-  /// is a choice to be studied, no fault of the geometry.
-  [[nodiscard]] bool RegularInAnotherMode(const std::vector<VectorXd>& reached) {
-    const std::vector<double> chosen = mechanism_.modes;
-    bool regular = false;
-    for (std::size_t signs = 1; signs < (std::size_t{1} << chosen.size()) && !regular; ++signs) {
-      for (std::size_t i = 0; i < chosen.size(); ++i) {
-        mechanism_.modes[i] = ((signs >> i) & 1U) == 0 ? chosen[i] : -chosen[i];
-      }
-      regular = std::any_of(reached.begin(), reached.end(), [&](const VectorXd& x) {
-        const MatrixXd A = ScaledA(x);
-        return A.allFinite() && A.rows() == A.cols() &&
-               ScaleJacobians(mechanism_, A, MatrixXd()).A.jacobiSvd().singularValues().minCoeff() >
-                   kNothing;
-      });
+  /// A with scaled rows at each pose; empty if that cannot be judged.
+  [[nodiscard]] std::vector<MatrixXd> ScaledAt(const std::vector<VectorXd>& poses) const {
+    std::vector<MatrixXd> scaled;
+    for (const VectorXd& x : poses) {
+      const MatrixXd A = ClosureByCoordinates(x);
+      if (!A.allFinite() || A.rows() != A.cols()) return {};
+      scaled.push_back(ScaleJacobians(mechanism_, A, MatrixXd()).A);
     }
-    mechanism_.modes = chosen;
-    return regular;
+    return scaled;
+  }
+
+  [[nodiscard]] static bool AllSingular(const std::vector<MatrixXd>& scaled) {
+    return scaled.size() >= 4 && std::all_of(scaled.begin(), scaled.end(), [](const MatrixXd& A) {
+             return A.jacobiSvd().singularValues().minCoeff() <= kNothing;
+           });
+  }
+
+  [[nodiscard]] static bool RowsAgree(const std::vector<MatrixXd>& scaled,
+                                      Eigen::Index i,
+                                      Eigen::Index j) {
+    return std::all_of(scaled.begin(), scaled.end(), [i, j](const MatrixXd& A) {
+      return std::min((A.row(i) - A.row(j)).norm(), (A.row(i) + A.row(j)).norm()) <= kNothing;
+    });
   }
 
   void FindSingularEverywhere(const std::vector<VectorXd>& reached) {
-    if (reached.size() < 4 || RegularInAnotherMode(reached)) return;
-    std::vector<MatrixXd> scaled;
-    for (const VectorXd& x : reached) {
-      const MatrixXd A = ScaledA(x);
-      if (!A.allFinite() || A.rows() != A.cols()) return;
-      scaled.push_back(ScaleJacobians(mechanism_, A, MatrixXd()).A);
-    }
+    const std::vector<MatrixXd> scaled = ScaledAt(reached);
+    if (!AllSingular(scaled)) return;
     bool named = false;
     for (Eigen::Index i = 0; i < scaled.front().rows(); ++i) {
       for (Eigen::Index j = i + 1; j < scaled.front().rows(); ++j) {
-        if (std::all_of(scaled.begin(), scaled.end(), [i, j](const MatrixXd& A) {
-              return std::min((A.row(i) - A.row(j)).norm(), (A.row(i) + A.row(j)).norm()) <=
-                     kNothing;
-            })) {
-          ComplainOfTwins(i, j, reached.front());
-          named = true;
-        }
+        if (RowsAgree(scaled, i, j)) named = ComplainOfTwins(i, j, reached.back()) || named;
       }
     }
-    if (named || std::any_of(scaled.begin(), scaled.end(), [](const MatrixXd& A) {
-          return A.jacobiSvd().singularValues().minCoeff() > kNothing;
-        })) {
-      return;
-    }
-    Complain(
-        "E0707",
-        {"parameters"},
-        {},
-        fmt::format("'{}' is singular at every pose: its drives do not hold the platform",
-                    block_.name),
-        "look for joints on one line, equal shapes of base and platform, or two links of equal "
-        "length that fold onto each other");
+    if (named || IsMatterOfMode()) return;
+    Complain("E0707",
+             {"parameters"},
+             {},
+             fmt::format("'{}' is singular at every pose: its drives do not hold the platform",
+                         block_.name),
+             "look for joints on one line, or equal shapes of base and platform");
   }
 
-  void ComplainOfTwins(Eigen::Index leg, Eigen::Index other, const VectorXd& x) {
+  /// Whether another assembly mode of the same geometry is regular somewhere, as of a lambda whose
+  /// equal links lie on each other in one mode only. Such numbers are a mechanism.
+  [[nodiscard]] bool IsMatterOfMode() const {
+    for (std::size_t i = 0; i < mechanism_.modes.size(); ++i) {
+      MechanismModel other = mechanism_;
+      other.modes[i] = -other.modes[i];
+      const BlockCheck turned(model_, other, nullptr);
+      const std::vector<VectorXd> reached = turned.Reached(turned.Probes(kProbes, 0.3));
+      if (reached.size() >= 4 && !AllSingular(turned.ScaledAt(reached))) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool AllAlike(const Element& element) const {
+    return std::all_of(elements_.begin(), elements_.end(), [&](const Element& other) {
+      return other.parameter != element.parameter || Numbers(other) == Numbers(element);
+    });
+  }
+
+  /// False if no numbers of the two legs coincide, so that it is not they that are to blame. At x
+  /// away from home, where symmetry hides what a leg depends on.
+  bool ComplainOfTwins(Eigen::Index leg, Eigen::Index other, const VectorXd& x) {
     MatrixXd by_parameters;
-    static_cast<void>(ScaledA(x, &by_parameters));
-    const std::vector<const Element*> shared = Shared(by_parameters, leg, other);
+    static_cast<void>(ClosureByCoordinates(x, &by_parameters));
+    std::vector<const Element*> shared = Shared(by_parameters, leg, other);
+    if (shared.empty()) return false;
+    // What all legs have alike, such as the length of their struts, is seldom the reason.
+    const auto telling =
+        std::stable_partition(shared.begin(), shared.end(), [this](const Element* element) {
+          return !AllAlike(*element);
+        });
+    if (telling != shared.begin()) shared.erase(telling, shared.end());
     std::vector<std::string> names;
     names.reserve(shared.size());
     for (const Element* element : shared) names.push_back(element->Name());
-    std::string message = fmt::format("the legs of {} and {} of '{}' are one and the same",
-                                      DriveName(leg),
-                                      DriveName(other),
-                                      block_.name);
-    const std::string help = "put one of their joints elsewhere";
-    if (shared.empty()) return Complain("E0706", {"parameters"}, {}, std::move(message), help);
-    message += fmt::format(": {} coincide", Joined(names));
-    ComplainAt(*shared[1], "E0706", std::move(message), help);
+    ComplainAt(*shared[1],
+               "E0706",
+               fmt::format("the legs of {} and {} of '{}' are one and the same: {} coincide",
+                           DriveName(leg),
+                           DriveName(other),
+                           block_.name,
+                           Joined(names)),
+               "put one of their joints elsewhere");
+    return true;
   }
 
   const Model& model_;
-  MechanismModel mechanism_;
+  const MechanismModel& mechanism_;
   const layout::Block& block_;
   std::vector<Element> elements_;
   VectorXd theta_;
