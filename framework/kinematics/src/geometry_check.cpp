@@ -126,7 +126,7 @@ class BlockCheck {
 
   /// Home and poses round it, always the same ones.
   [[nodiscard]] std::vector<VectorXd> Probes(int count, double spread) const {
-    std::mt19937 random(7);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same answer in every run
+    std::mt19937 random(7);  // the same answer in every run
     std::vector<VectorXd> probes{home_};
     for (int k = 0; k < count; ++k) {
       VectorXd x = home_;
