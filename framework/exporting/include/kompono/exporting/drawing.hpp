@@ -16,8 +16,8 @@ struct DrawingOptions {
   double height_px = 480.0;
   /// View direction: azimuth from x to y and elevation above the base plane, degrees; a planar
   /// machine (all points in one plane) is drawn square on.
-  double azimuth_deg = -60.0;
-  double elevation_deg = 22.0;
+  double azimuth_deg = -75.0;
+  double elevation_deg = 24.0;
   bool point_names = false;
 };
 

@@ -233,6 +233,18 @@ class Machine {
   };
   [[nodiscard]] SkeletonView Skeleton(const VectorXd& z, const VectorXd& theta) const;
 
+  /// Where the blocks of this chain stand, in the frame of the workpiece-side base M: first the
+  /// tool side from the base outward, then the workpiece side. For drawing and capabilities.
+  struct FrameView {
+    enum class Kind { kAxis, kMechanism, kEnd } kind = Kind::kAxis;
+    std::string name;  ///< of the axis, block or end
+    bool workpiece_side = false;
+    Pose<double> X_MC;  ///< where the block sits: axis frame, mechanism's or unit's base
+    Pose<double> X_MF;  ///< what it carries: beyond the motion, platform, or station
+    std::vector<Pose<double>> stations;  ///< of a unit: all that it has, as its state leaves them
+  };
+  [[nodiscard]] std::vector<FrameView> Frames(const VectorXd& z, const VectorXd& theta) const;
+
   /// The mechanisms on this chain with their code, for those who record formulas or count links.
   struct BlockView {
     const layout::Block* block = nullptr;

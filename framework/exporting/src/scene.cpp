@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "kompono/geometry/pose.hpp"
+
+namespace kompono::exporting {
+namespace {
+
+using kinematics::Machine;
+using kinematics::VectorXd;
+using Form = Shape::Form;
+using Frame = Machine::FrameView;
+
+void LeavesOf(const formula::Chain& chain, std::vector<std::string>* names) {
+  for (const formula::Item& item : chain) {
+    if (const auto* leaf = std::get_if<formula::Leaf>(&item)) names->push_back(leaf->Name());
+    if (const auto* fork = std::get_if<formula::Fork>(&item)) {
+      for (const formula::Chain& branch : fork->branches) LeavesOf(branch, names);
+    }
+  }
+}
+
+/// Points on a circle about z of the frame.
+std::vector<Eigen::Vector3d> Ring(const Pose<double>& X, double radius, double height) {
+  constexpr int kCorners = 32;
+  std::vector<Eigen::Vector3d> ring;
+  for (int i = 0; i < kCorners; ++i) {
+    const double a = 2.0 * std::numbers::pi * i / kCorners;
+    ring.push_back(X * Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), height));
+  }
+  return ring;
+}
+
+std::vector<Eigen::Vector3d> Box(const Pose<double>& X, double half, double low, double high) {
+  std::vector<Eigen::Vector3d> corners;
+  for (const double h : {low, high}) {
+    for (const auto& [sx, sy] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+      corners.push_back(X * Eigen::Vector3d(sx * half, sy * half, h));
+  }
+  return corners;
+}
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const Machine& machine, const VectorXd& z, const VectorXd& theta)
+      : machine_(machine), z_(z), theta_(theta) {}
+
+  Scene Build() {
+    CollectChains();
+    Measure();
+    AddMechanisms();
+    for (const auto& [name, chain] : ends_) AddEnd(chain);
+    return std::move(scene_);
+  }
+
+ private:
+  /// One end with the frames of its own side, from the base outward; the end is the last.
+  using Outward = std::vector<Frame>;
+
+  void CollectChains() {
+    std::vector<std::string> parts;
+    std::vector<std::string> tools;
+    LeavesOf(machine_.layout().formula.left, &parts);
+    LeavesOf(machine_.layout().formula.right, &tools);
+    for (const std::string& part : parts) CollectChain(part, tools.front());
+    for (const std::string& tool : tools) CollectChain(parts.front(), tool);
+  }
+
+  void CollectChain(const std::string& part, const std::string& tool) {
+    const Parsed<Machine> chain = machine_.Between(part, tool);
+    if (!chain) return;
+    VectorXd z = chain->home();
+    for (std::size_t i = 0; i < chain->coordinates().size(); ++i) {
+      const int at = machine_.FindCoordinate(chain->coordinates()[i].name);
+      if (at >= 0) z[static_cast<Eigen::Index>(i)] = z_[at];
+    }
+    Machine::SkeletonView skeleton = chain->Skeleton(z, theta_);
+    for (auto& point : skeleton.points) points_.emplace(point.name, point.p_M);
+    for (auto& link : skeleton.links) {
+      if (seen_.insert(link.from + " " + link.to + " " + link.kind).second) links_.push_back(link);
+    }
+    std::map<bool, Outward> sides;
+    for (Frame& frame : chain->Frames(z, theta_)) {
+      const bool side = frame.workpiece_side;
+      sides[side].push_back(std::move(frame));
+    }
+    for (auto& [side, outward] : sides) {
+      if (!outward.empty() && outward.back().kind == Frame::Kind::kEnd)
+        ends_.emplace(outward.back().name, std::move(outward));
+    }
+  }
+
+  void Measure() {
+    Eigen::AlignedBox3d box;
+    for (const auto& [name, p] : points_) {
+      scene_.joints.push_back(p);
+      box.extend(p);
+    }
+    for (const auto& [name, outward] : ends_) {
+      box.extend(outward.back().X_MC.p);
+      if (outward.back().X_MF.p.allFinite()) box.extend(outward.back().X_MF.p);
+      for (const Pose<double>& station : outward.back().stations) box.extend(station.p);
+    }
+    scene_.size_mm = std::max(1e-3, box.diagonal().norm());
+    // A horizontal spindle along z of the base lays the machine down: y is then up.
+    for (const auto& [name, outward] : ends_) {
+      for (const Frame& frame : outward) {
+        if (frame.kind == Frame::Kind::kAxis && LiesAlongZ(frame))
+          scene_.axes << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+      }
+    }
+  }
+
+  [[nodiscard]] bool LiesAlongZ(const Frame& frame) const {
+    const std::vector<formula::Axis> axes = formula::AxesOf(machine_.layout().formula);
+    return std::any_of(axes.begin(), axes.end(), [&frame](const formula::Axis& axis) {
+      return axis.Name() == frame.name && axis.orientation == formula::Orientation::kHorizontal &&
+             std::abs(frame.X_MC.R.col(AxisOfLetter(axis.letter)).z()) > 0.9;
+    });
+  }
+
+  void Add(Form form,
+           std::string kind,
+           std::vector<Eigen::Vector3d> points,
+           int layer = 0,
+           std::string text = "") {
+    scene_.shapes.push_back({.form = form,
+                             .kind = std::move(kind),
+                             .points = std::move(points),
+                             .text = std::move(text),
+                             .layer = layer});
+  }
+
+  void AddMechanisms() {
+    std::map<std::string, std::set<std::string>> platforms;  // block -> points
+    std::set<std::string> on_rail;
+    std::set<std::string> strut_ends;
+    for (const Machine::SkeletonLink& link : links_) {
+      const auto from = points_.find(link.from);
+      const auto to = points_.find(link.to);
+      if (from == points_.end() || to == points_.end()) continue;
+      std::vector<Eigen::Vector3d> line{from->second, to->second};
+      if (link.kind == "rail") {
+        const Eigen::Vector3d beyond = 0.25 * (line[1] - line[0]);
+        line = {line[0] - beyond, line[1] + beyond};
+        on_rail.insert({link.from, link.to});
+      }
+      if (link.kind == "strut") strut_ends.insert({link.from, link.to});
+      if (link.kind == "platform")
+        platforms[link.from.substr(0, link.from.find('.'))].insert({link.from, link.to});
+      Add(Form::kLine, link.kind, std::move(line));
+    }
+    for (const auto& [block, names] : platforms) {
+      std::vector<Eigen::Vector3d> corners;
+      for (const std::string& name : names) corners.push_back(points_.at(name));
+      if (corners.size() > 2) Add(Form::kBody, "plate", std::move(corners));
+    }
+    for (const auto& [name, p] : points_) {
+      const bool strut = strut_ends.contains(name);
+      if (on_rail.contains(name) && !strut) continue;  // a rail's mark
+      const bool tool = name.ends_with(".tool");
+      Add(Form::kDot,
+          tool                     ? "tool"
+          : on_rail.contains(name) ? "carriage"
+                                   : "joint",
+          {p},
+          1,
+          name.substr(name.rfind('.') + 1));
+    }
+  }
+
+  [[nodiscard]] bool TurnsPart(const Outward& outward) const {
+    return std::any_of(outward.begin(), outward.end(), [this](const Frame& frame) {
+      if (frame.kind != Frame::Kind::kAxis) return false;
+      const layout::Axis* axis = machine_.layout().FindAxis(frame.name);
+      return axis != nullptr && axis->main_motion;
+    });
+  }
+
+  void AddEnd(const Outward& outward) {
+    const Frame& end = outward.back();
+    if (!end.X_MC.p.allFinite() || !end.X_MF.p.allFinite()) return;
+    AddArm(outward);
+    if (!end.workpiece_side) {
+      if (end.stations.size() > 1) {
+        AddTurret(end);
+      } else {
+        AddTool(end);
+      }
+    } else if (TurnsPart(outward)) {
+      AddChuck(end);
+    } else if (end.X_MC.R.col(2).dot(end.X_MF.R.col(2)) < -0.5) {
+      AddTool(end);  // a centre that looks back
+    } else {
+      AddTable(end);
+    }
+    AddAxes(outward);
+    Add(Form::kName, "name", {end.X_MF.p}, 3, end.name);
+  }
+
+  /// What holds the end: a line from the platform it stands on.
+  void AddArm(const Outward& outward) {
+    for (auto frame = outward.rbegin(); frame != outward.rend(); ++frame) {
+      if (frame->kind != Frame::Kind::kMechanism) continue;
+      if ((frame->X_MF.p - outward.back().X_MC.p).norm() > 1e-6)
+        Add(Form::kLine, "arm", {frame->X_MF.p, outward.back().X_MC.p});
+      return;
+    }
+  }
+
+  /// Thick at the base, pointed at the tip.
+  void AddTool(const Frame& end) {
+    const Eigen::Vector3d along = end.X_MF.p - end.X_MC.p;
+    if (along.norm() < 1e-9) {
+      Add(Form::kDot, "tip", {end.X_MF.p}, 2);
+      return;
+    }
+    Pose<double> X = end.X_MC;
+    X.R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
+    const double thick = std::min(0.022 * scene_.size_mm, 0.25 * along.norm());
+    std::vector<Eigen::Vector3d> body = Ring(X, thick, 0.0);
+    const std::vector<Eigen::Vector3d> waist = Ring(X, thick, 0.6 * along.norm());
+    body.insert(body.end(), waist.begin(), waist.end());
+    body.push_back(end.X_MF.p);
+    Add(Form::kBody, "cutter", std::move(body), 1);
+    Add(Form::kDot, "tip", {end.X_MF.p}, 2);
+  }
+
+  /// A body round the disc, a spoke to every tip; stations of two discs lie at two heights.
+  void AddTurret(const Frame& end) {
+    std::map<long, std::vector<Eigen::Vector3d>> discs;
+    for (const Pose<double>& station : end.stations) {
+      const double height = (end.X_MC.Inverse() * station.p).z();
+      discs[std::lround(height * 1e3)].push_back(station.p);
+    }
+    for (const auto& [height, tips] : discs) {
+      Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& tip : tips) centre += tip / static_cast<double>(tips.size());
+      std::vector<Eigen::Vector3d> body;
+      for (const Eigen::Vector3d& tip : tips) {
+        body.push_back(centre + 0.7 * (tip - centre));
+        Add(Form::kLine, "pocket", {centre + 0.6 * (tip - centre), tip}, 1);
+      }
+      Add(Form::kBody, "disc", std::move(body), 1);
+    }
+    Add(Form::kDot, "tip", {end.X_MF.p}, 2);
+  }
+
+  /// The chuck behind the stop and a bar before it.
+  void AddChuck(const Frame& end) {
+    const double radius = 0.035 * scene_.size_mm;
+    std::vector<Eigen::Vector3d> chuck = Ring(end.X_MF, 1.8 * radius, 0.0);
+    const double depth = -std::max(2.0 * radius, (end.X_MF.p - end.X_MC.p).norm());
+    const std::vector<Eigen::Vector3d> back = Ring(end.X_MF, 1.8 * radius, depth);
+    chuck.insert(chuck.end(), back.begin(), back.end());
+    Add(Form::kBody, "holder", std::move(chuck));
+    std::vector<Eigen::Vector3d> bar = Ring(end.X_MF, 0.8 * radius, 0.0);
+    const std::vector<Eigen::Vector3d> face = Ring(end.X_MF, 0.8 * radius, 4.0 * radius);
+    bar.insert(bar.end(), face.begin(), face.end());
+    Add(Form::kBody, "part", std::move(bar), 1);
+  }
+
+  /// A plate under the datum.
+  void AddTable(const Frame& end) {
+    const double half = 0.09 * scene_.size_mm;
+    Add(Form::kBody, "part", Box(end.X_MF, half, -0.25 * half, 0.0), -1);
+    Add(Form::kBody, "part-face", Box(end.X_MF, half, 0.0, 0.0), -1);
+  }
+
+  /// Plain axes as arrows at the end they carry, turns as arcs about their own axes.
+  void AddAxes(const Outward& outward) {
+    for (const Frame& frame : outward) {
+      if (frame.kind != Frame::Kind::kAxis || !drawn_.insert(frame.name).second) continue;
+      const layout::Axis* axis = machine_.layout().FindAxis(frame.name);
+      if (axis == nullptr) continue;
+      const Eigen::Vector3d along = frame.X_MC.R.col(AxisOfLetter(axis->letter));
+      const Eigen::Vector3d& foot = frame.X_MC.p.norm() > 1e-9 || IsRotaryLetter(axis->letter)
+                                        ? frame.X_MC.p
+                                        : outward.back().X_MC.p;
+      const double length = 0.12 * scene_.size_mm;
+      Add(IsRotaryLetter(axis->letter) ? Form::kArc : Form::kArrow,
+          "axis",
+          {foot, foot + length * along},
+          2,
+          frame.name);
+    }
+  }
+
+  const Machine& machine_;
+  const VectorXd& z_;
+  const VectorXd& theta_;
+  Scene scene_;
+  std::map<std::string, Eigen::Vector3d> points_;
+  std::vector<Machine::SkeletonLink> links_;
+  std::set<std::string> seen_, drawn_;
+  std::map<std::string, Outward> ends_;
+};
+
+}  // namespace
+
+Scene SceneOf(const Machine& machine, const VectorXd& z, const VectorXd& theta) {
+  return SceneBuilder(machine, z, theta).Build();
+}
+
+}  // namespace kompono::exporting
