@@ -16,6 +16,7 @@
 #include "kompono/analysis/mobility.hpp"
 #include "kompono/catalog/hash.hpp"
 #include "kompono/formula/equivalence.hpp"
+#include "kompono/kinematics/branches.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -118,8 +119,15 @@ LayoutRecord RecordOf(const Machine& machine,
   record.distribution = formula::DistributionKey(layout.formula);
   record.relative_motion = formula::RelativeMotionKey(layout.formula);
   record.open_base = layout.formula.open_base;
-  record.coordinates = static_cast<int>(machine.coordinates().size());
-  record.drives = static_cast<int>(machine.drives().size());
+  std::set<std::string> coordinates;
+  std::set<std::string> drives;
+  for (const kinematics::Branch& branch : kinematics::Branches(machine)) {
+    for (const kinematics::Coordinate& coordinate : branch.chain.coordinates())
+      coordinates.insert(coordinate.name);
+    for (const kinematics::Drive& drive : branch.chain.drives()) drives.insert(drive.name);
+  }
+  record.coordinates = static_cast<int>(coordinates.size());
+  record.drives = static_cast<int>(drives.size());
   AddMotions(layout.formula.left, catalog::Side::kWorkpiece, record);
   AddMotions(layout.formula.right, catalog::Side::kTool, record);
   AddModules(layout, registry, record);

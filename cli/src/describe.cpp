@@ -15,6 +15,7 @@
 #include "kompono/analysis/mobility.hpp"
 #include "kompono/formula/equivalence.hpp"
 #include "kompono/formula/formula.hpp"
+#include "kompono/kinematics/branches.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -30,9 +31,15 @@ constexpr const char* kExamples =
 /// What is computed once and printed in two ways.
 struct Sheet {
   const Machine& machine;
+  std::vector<kinematics::Coordinate> coordinates;  ///< of all branches of the formula
+  std::vector<kinematics::Drive> drives;
   std::vector<analysis::BlockMobility> mobility;
   std::vector<kinematics::Singularity> singularities;  ///< at home
-  kinematics::PoseNumbers home;
+  struct Home {
+    std::string part, tool;
+    kinematics::PoseNumbers pose;
+  };
+  std::vector<Home> homes;                                       ///< one per branch
   std::map<std::string, std::vector<std::string>> capabilities;  ///< and what gives them
   std::vector<analysis::Ability> abilities;
 };
@@ -50,16 +57,40 @@ std::map<std::string, std::vector<std::string>> CapabilitiesOf(const layout::Lay
   return out;
 }
 
+/// Appends what has a name that is not there yet.
+template <class T>
+void Merge(const std::vector<T>& from, std::vector<T>& into, std::string T::*name) {
+  for (const T& item : from) {
+    const bool known = std::any_of(into.begin(), into.end(), [&item, name](const T& other) {
+      return other.*name == item.*name;
+    });
+    if (!known) into.push_back(item);
+  }
+}
+
 Sheet Describe(const Machine& machine, const plugin::Registry& registry) {
-  const Eigen::VectorXd z = machine.home();
   const Eigen::VectorXd theta = machine.nominal();
-  return {.machine = machine,
-          .mobility = analysis::Mobility(machine),
-          .singularities = machine.Singularities(z, theta),
-          .home = kinematics::NumbersFromPose(machine.ToolPose(z, theta),
-                                              machine.layout().rotation_order),
-          .capabilities = CapabilitiesOf(machine.layout(), registry),
-          .abilities = analysis::Abilities(machine, registry)};
+  Sheet sheet{.machine = machine,
+              .coordinates = {},
+              .drives = {},
+              .mobility = analysis::Mobility(machine),
+              .singularities = {},
+              .homes = {},
+              .capabilities = CapabilitiesOf(machine.layout(), registry),
+              .abilities = analysis::Abilities(machine, registry)};
+  for (const kinematics::Branch& branch : kinematics::Branches(machine)) {
+    const Machine& chain = branch.chain;
+    Merge(chain.coordinates(), sheet.coordinates, &kinematics::Coordinate::name);
+    Merge(chain.drives(), sheet.drives, &kinematics::Drive::name);
+    Merge(chain.Singularities(chain.home(), theta),
+          sheet.singularities,
+          &kinematics::Singularity::block);
+    sheet.homes.push_back({branch.part,
+                           branch.tool,
+                           kinematics::NumbersFromPose(chain.ToolPose(chain.home(), theta),
+                                                       machine.layout().rotation_order)});
+  }
+  return sheet;
 }
 
 std::size_t Identifiable(const Machine& machine) {
@@ -86,9 +117,9 @@ std::string PlacementText(const layout::Placement& placement) {
                      Brief(r[2] * kDegPerRad));
 }
 
-void AddMotionsJson(const Machine& machine, ordered_json& out) {
+void AddMotionsJson(const Sheet& sheet, ordered_json& out) {
   out["coordinates"] = ordered_json::array();
-  for (const kinematics::Coordinate& coordinate : machine.coordinates()) {
+  for (const kinematics::Coordinate& coordinate : sheet.coordinates) {
     out["coordinates"].push_back(
         {{"name", coordinate.name},
          {"letter", std::string(1, coordinate.letter)},
@@ -97,7 +128,7 @@ void AddMotionsJson(const Machine& machine, ordered_json& out) {
          {"home", Outward(coordinate.home, coordinate.rotary)}});
   }
   out["drives"] = ordered_json::array();
-  for (const kinematics::Drive& drive : machine.drives()) {
+  for (const kinematics::Drive& drive : sheet.drives) {
     ordered_json entry{{"name", drive.name},
                        {"unit", UnitOf(drive.rotary)},
                        {"range", RangeJson(drive.lower, drive.upper, drive.rotary)}};
@@ -136,7 +167,7 @@ ordered_json SheetJson(const Sheet& sheet) {
     out["explanation"].push_back(
         {{"text", line.text}, {"meaning", line.meaning}, {"depth", line.depth}});
   }
-  AddMotionsJson(sheet.machine, out);
+  AddMotionsJson(sheet, out);
   out["mechanisms"] = ordered_json::array();
   for (const analysis::BlockMobility& block : sheet.mobility) {
     ordered_json entry{{"block", block.block},
@@ -165,21 +196,25 @@ ordered_json SheetJson(const Sheet& sheet) {
   out["capabilities"] = sheet.capabilities;
   out["abilities"] = AbilitiesJson(sheet.abilities);
   const SingularitySummary summary = Summary(sheet.singularities);
-  out["home"] = {{"pose", PoseJson(sheet.home)},
+  out["home"] = {{"pose", PoseJson(sheet.homes.front().pose)},
                  {"singularity", {{"type", summary.type}, {"margin", summary.margin}}}};
+  out["branches"] = ordered_json::array();
+  for (const Sheet::Home& home : sheet.homes)
+    out["branches"].push_back(
+        {{"part", home.part}, {"tool", home.tool}, {"pose", PoseJson(home.pose)}});
   return out;
 }
 
-std::string MotionsText(const Machine& machine) {
+std::string MotionsText(const Sheet& sheet) {
   TextTable coordinates({{"coordinate"}, {"range"}, {"home", true}, {""}});
-  for (const kinematics::Coordinate& c : machine.coordinates()) {
+  for (const kinematics::Coordinate& c : sheet.coordinates) {
     coordinates.Row({c.name,
                      RangeText(c.lower, c.upper, c.rotary),
                      Fixed(Outward(c.home, c.rotary)),
                      std::string(UnitOf(c.rotary))});
   }
   TextTable drives({{"drive"}, {"range"}, {"speed", true}, {"acceleration", true}});
-  for (const kinematics::Drive& d : machine.drives()) {
+  for (const kinematics::Drive& d : sheet.drives) {
     const auto rate = [&d](const std::optional<double>& value, std::string_view per) {
       return value
                  ? fmt::format("{} {}/{}", Brief(Outward(*value, d.rotary)), UnitOf(d.rotary), per)
@@ -239,8 +274,7 @@ void Print(Console& console, const Sheet& sheet) {
     lines.Row(
         {std::string(static_cast<std::size_t>(2 * line.depth), ' ') + line.text, line.meaning});
   }
-  console.Out(lines.Render() + MotionsText(sheet.machine) + MobilityText(sheet) +
-              AbilitiesText(sheet));
+  console.Out(lines.Render() + MotionsText(sheet) + MobilityText(sheet) + AbilitiesText(sheet));
   TextTable facts({{""}, {""}});
   for (const layout::End& end : layout.ends) {
     facts.Row(
@@ -263,8 +297,12 @@ void Print(Console& console, const Sheet& sheet) {
        fmt::format(
            "{}, singularity margin {}", SingularityName(summary.type), Fixed(summary.margin))});
   console.Out("\n" + facts.Render());
-  console.Out(fmt::format("\ntool pose at home, {}\n", OrderName(layout.rotation_order)) +
-              PoseText(sheet.home));
+  for (const Sheet::Home& home : sheet.homes) {
+    const std::string ends =
+        sheet.homes.size() > 1 ? fmt::format(" of {} on {}", home.tool, home.part) : "";
+    console.Out(fmt::format("\ntool pose at home{}, {}\n", ends, OrderName(layout.rotation_order)) +
+                PoseText(home.pose));
+  }
 }
 
 struct Options {

@@ -37,11 +37,11 @@ Eigen::MatrixXd Rows(const Matrix6X& J, const std::vector<std::size_t>& rows) {
   return out;
 }
 
-Eigen::Index RankOf(const Eigen::MatrixXd& J) {
+/// Independent rows; what is small against `size`, an entry of the whole matrix, is rounding.
+Eigen::Index RankOf(const Eigen::MatrixXd& J, double size) {
   if (J.size() == 0) return 0;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(J);
-  qr.setThreshold(kRank);
-  return qr.rank();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(J);
+  return (qr.matrixQR().diagonal().cwiseAbs().array() > kRank * size).count();
 }
 
 }  // namespace
@@ -64,17 +64,18 @@ DriveJacobian JacobianOf(const kinematics::Machine& machine,
     if (machine.coordinates()[i].rotary) scale[static_cast<Eigen::Index>(i)] /= kRadianLengthMm;
   }
   const Matrix6X scaled = pose_by_z * scale.asDiagonal();
+  const double size = scaled.size() == 0 ? 0.0 : scaled.cwiseAbs().maxCoeff();
 
   DriveJacobian out;
   for (std::size_t k = 0; k < 6; ++k) {
     if (wanted[k]) out.components.push_back(k);
   }
-  Eigen::Index rank = RankOf(Rows(scaled, out.components));
+  Eigen::Index rank = RankOf(Rows(scaled, out.components), size);
   for (const std::size_t k : {3U, 4U, 5U, 0U, 1U, 2U}) {
     if (wanted[k]) continue;
     std::vector<std::size_t> more = out.components;
     more.push_back(k);
-    const Eigen::Index with = RankOf(Rows(scaled, more));
+    const Eigen::Index with = RankOf(Rows(scaled, more), size);
     if (with <= rank) continue;
     rank = with;
     out.components = std::move(more);

@@ -72,7 +72,7 @@ TEST(Abilities, OfACounterSpindleAndASwivellingTool) {
   // 820 - 180 = 640 mm between the stops, less the 600 mm of Z2.
   EXPECT_EQ(Lathe().Reason("take_over"),
             "part1 and part2 are coaxial and face each other, 40 to 640 mm apart by Z2");
-  EXPECT_EQ(Lathe().Reason("sequential_parts"), "tool works on part1, then tool on part2");
+  EXPECT_EQ(Lathe().Reason("sequential_parts"), "tool works on part1, then on part2");
   EXPECT_EQ(Lathe().Reason("long_part_ends"), "tool faces either end by B; parts up to 640 mm");
   EXPECT_THAT(Lathe().Judged().at("take_over").by, UnorderedElementsAre("part1", "part2", "Z2"));
 }
@@ -225,6 +225,45 @@ TEST(Abilities, ALongPartNeedsItsOtherEndHeld) {
       .With("part2", "[part2]\nmodule = \"tailstock\"\nmount = { position = [0, 0, 1000] }")
       .With("Z2", "[axis.Z2]\nrange = [-600, 0]");
   EXPECT_THAT(lathe.Possible(), testing::Contains("two_tools_at_once"));
+}
+
+std::vector<std::string> OfShipped(const std::string& machine) {
+  std::vector<std::string> names;
+  for (const Ability& ability : Abilities(tests::LoadMachine(machine), tests::ShippedRegistry())) {
+    if (ability.possible) names.emplace_back(ability.name());
+  }
+  return names;
+}
+
+// KDD table 1, row by row; a later row keeps what the units it shares with the first make possible.
+TEST(KddTable1, CounterSpindleAndSwivellingTurret) {
+  EXPECT_THAT(OfShipped("kdd_counter_spindle"),
+              testing::ElementsAre("sequential_parts", "take_over", "long_part_ends"));
+}
+
+TEST(KddTable1, TwinTurret) {
+  EXPECT_THAT(
+      OfShipped("kdd_twin_turret"),
+      testing::ElementsAre("sequential_parts", "take_over", "long_part_ends", "more_tools"));
+}
+
+TEST(KddTable1, MirroredMechanismsWithMovingHeads) {
+  EXPECT_THAT(OfShipped("kdd_mirrored_pair"),
+              testing::ElementsAre("sequential_parts",
+                                   "take_over",
+                                   "long_part_ends",
+                                   "more_tools",
+                                   "two_tools_at_once",
+                                   "parallel_parts",
+                                   "reclamped_ends",
+                                   "quick_changeover",
+                                   "larger_zone"));
+}
+
+TEST(KddTable1, PlainLathesHaveNoneOfIt) {
+  EXPECT_THAT(OfShipped("kdd_four_strut_lathe"), testing::IsEmpty());
+  EXPECT_THAT(OfShipped("kdd_six_strut_lathe"), testing::IsEmpty());
+  EXPECT_THAT(OfShipped("v100_lathe"), testing::IsEmpty());
 }
 
 TEST(Abilities, OfAMillAreNone) {

@@ -90,10 +90,10 @@ class Judge {
       const Way* first = shop_.Reaches(*pair_.first, carrier);
       const Way* second = shop_.Reaches(*pair_.second, carrier);
       if (first == nullptr || second == nullptr) continue;
-      return Given(fmt::format("{} works on {}, then {} on {}",
+      return Given(fmt::format("{} works on {}, then{} on {}",
                                first->end,
                                pair_.first->end,
-                               second->end,
+                               first == second ? "" : " " + second->end,
                                pair_.second->end),
                    {pair_.first->end, pair_.second->end, first->end, second->end});
     }
@@ -132,13 +132,13 @@ class Judge {
       const Way* first = shop_.Reaches(*pair_.first, carrier);
       const Way* second = shop_.Reaches(*pair_.second, carrier);
       if (first == nullptr || second == nullptr) continue;
-      const std::vector<std::string> by = FacesBothWays(carrier);
-      if (by.empty()) continue;
+      const BothWays both = FacesBothWays(carrier);
+      if (both.by.empty()) continue;
       return Given(fmt::format("{} faces either end by {}; parts up to {}",
                                first->end,
-                               Listed(by),
+                               both.means,
                                Length(facing_.furthest_mm)),
-                   Together({pair_.first->end, pair_.second->end, first->end}, by));
+                   Together({pair_.first->end, pair_.second->end, first->end}, both.by));
     }
     const Pairing apart = OneEach();
     if (apart.first == nullptr)
@@ -280,12 +280,20 @@ class Judge {
   }
 
   /// What lets the carrier's tools look at either end of a part.
-  [[nodiscard]] std::vector<std::string> FacesBothWays(const Carrier& carrier) const {
+  struct BothWays {
+    std::string means;
+    std::vector<std::string> by;
+  };
+  [[nodiscard]] BothWays FacesBothWays(const Carrier& carrier) const {
     for (const Way& tool : carrier) {
-      if (tool.Is(plugin::words::kTwoTurrets) || tool.Is(plugin::words::kSwivelsTool))
-        return {tool.end};
+      if (tool.Is(plugin::words::kTwoTurrets)) return {"its two turrets", {tool.end}};
     }
-    return shop_.Swings(*pair_.first, carrier.front());
+    for (const Way& tool : carrier) {
+      const std::vector<std::string> swings = shop_.Swings(*pair_.first, tool);
+      if (!swings.empty()) return {Listed(swings), swings};
+      if (tool.Is(plugin::words::kSwivelsTool)) return {"its swivel", {tool.end}};
+    }
+    return {};
   }
 
   /// The holder or support that takes the other end of a part held in `part`.

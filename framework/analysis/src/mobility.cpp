@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <Eigen/SVD>
+
+#include "kompono/kinematics/branches.hpp"
 
 namespace kompono::analysis {
 namespace {
@@ -73,32 +77,42 @@ std::string Explain(const BlockMobility& mobility) {
                      -difference);
 }
 
+BlockMobility MobilityOf(const kinematics::Machine& machine,
+                         const kinematics::Machine::BlockView& view) {
+  const plugin::MechanismShape shape = view.code->Shape();
+  BlockMobility mobility{.block = view.block->name,
+                         .module = view.block->module,
+                         .drives = shape.drives,
+                         .coordinates = shape.coordinates,
+                         .numeric = NumericMobility(machine, view)};
+  if (view.description->structure) {
+    const plugin::StructureDescription& structure = *view.description->structure;
+    int freedoms = 0;
+    for (const auto& [letter, count] : structure.pairs) {
+      mobility.pairs += count;
+      freedoms += count * FreedomsOfPair(letter);
+    }
+    const int space = structure.planar ? 3 : 6;
+    mobility.counted = true;
+    mobility.links = structure.links;
+    mobility.loops = mobility.pairs - mobility.links + 1;
+    mobility.gruebler = space * (mobility.links - 1 - mobility.pairs) + freedoms;
+  }
+  mobility.explanation = Explain(mobility);
+  return mobility;
+}
+
 }  // namespace
 
 std::vector<BlockMobility> Mobility(const kinematics::Machine& machine) {
   std::vector<BlockMobility> out;
-  for (const kinematics::Machine::BlockView& view : machine.blocks()) {
-    const plugin::MechanismShape shape = view.code->Shape();
-    BlockMobility mobility{.block = view.block->name,
-                           .module = view.block->module,
-                           .drives = shape.drives,
-                           .coordinates = shape.coordinates,
-                           .numeric = NumericMobility(machine, view)};
-    if (view.description->structure) {
-      const plugin::StructureDescription& structure = *view.description->structure;
-      int freedoms = 0;
-      for (const auto& [letter, count] : structure.pairs) {
-        mobility.pairs += count;
-        freedoms += count * FreedomsOfPair(letter);
-      }
-      const int space = structure.planar ? 3 : 6;
-      mobility.counted = true;
-      mobility.links = structure.links;
-      mobility.loops = mobility.pairs - mobility.links + 1;
-      mobility.gruebler = space * (mobility.links - 1 - mobility.pairs) + freedoms;
+  for (const kinematics::Branch& branch : kinematics::Branches(machine)) {
+    for (const kinematics::Machine::BlockView& view : branch.chain.blocks()) {
+      const bool known = std::any_of(out.begin(), out.end(), [&view](const BlockMobility& other) {
+        return other.block == view.block->name;
+      });
+      if (!known) out.push_back(MobilityOf(branch.chain, view));
     }
-    mobility.explanation = Explain(mobility);
-    out.push_back(std::move(mobility));
   }
   return out;
 }

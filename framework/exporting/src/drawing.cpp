@@ -33,8 +33,10 @@ bool Planar(const std::vector<Eigen::Vector3d>& points, Eigen::Vector3d* normal)
 /// A planar machine square on, from its own upper side; any other as the options say.
 View Chosen(const Scene& scene, const DrawingOptions& options) {
   Eigen::Vector3d normal;
+  // A lathe is seen more from the end, so that its discs are not seen edge on.
+  const double turned_deg = scene.axes.isIdentity() ? 0.0 : 13.0;
   if (!Planar(scene.joints, &normal))
-    return ViewFrom(scene.axes, options.azimuth_deg, options.elevation_deg);
+    return ViewFrom(scene.axes, options.azimuth_deg + turned_deg, options.elevation_deg);
   const Eigen::Vector3d in_axes = scene.axes.transpose() * normal;
   if (std::abs(in_axes.z()) > 0.5) return ViewFrom(scene.axes, -90.0, 90.0);
   const double azimuth_deg = std::atan2(in_axes.y(), in_axes.x()) * 180.0 / std::numbers::pi;
@@ -43,8 +45,10 @@ View Chosen(const Scene& scene, const DrawingOptions& options) {
 
 constexpr const char* kStyle = R"(<style>
   line, path, polyline { stroke-linecap: round; stroke-linejoin: round; fill: none }
-  .rail { stroke: #8a93a3; stroke-width: 8; opacity: .55 }
+  .rail { stroke: #bfc6d0; stroke-width: 8 }
   .strut { stroke: #2f6fb2; stroke-width: 4.5 }
+  .cylinder { stroke: #5b8fc4; stroke-width: 9 }
+  .foundation { fill: #8a93a3; fill-opacity: .18; stroke: #8a93a3; stroke-width: 1.2 }
   .platform { stroke: #c8642b; stroke-width: 4.5 }
   .base { stroke: #8a93a3; stroke-width: 4 }
   .arm { stroke: #c8642b; stroke-width: 3; stroke-dasharray: 1 6 }
@@ -54,6 +58,7 @@ constexpr const char* kStyle = R"(<style>
   .tool, .tip { fill: #b3261e }
   .cutter { fill: #7a8696; stroke: #4a5462; stroke-width: 1 }
   .disc { fill: #7a8696; fill-opacity: .75; stroke: #4a5462; stroke-width: 1.2 }
+  .disc-face { fill: #9aa5b3; stroke: #4a5462; stroke-width: 1 }
   .pocket { stroke: #4a5462; stroke-width: 3 }
   .holder { fill: #a7b0bd; stroke: #5c6675; stroke-width: 1.2; fill-opacity: .8 }
   .part { fill: #4c9a63; stroke: #2f6b43; stroke-width: 1.2; fill-opacity: .55 }
@@ -70,7 +75,7 @@ class Pen {
  public:
   Pen(const Canvas& canvas, bool point_names) : canvas_(canvas), point_names_(point_names) {}
 
-  [[nodiscard]] std::string Draw(const Shape& shape) const {
+  [[nodiscard]] std::string Draw(const Shape& shape) {
     switch (shape.form) {
       case Form::kLine:
         return Line(shape);
@@ -85,7 +90,15 @@ class Pen {
       case Form::kName:
         break;
     }
-    return Text(canvas_.Place(shape.points[0]) + Eigen::Vector2d(9, 16), shape.text);
+    Eigen::Vector2d at = canvas_.Place(shape.points[0]) + Eigen::Vector2d(10, 17);
+    // A name does not lie on another one.
+    while (std::any_of(names_.begin(), names_.end(), [&at](const Eigen::Vector2d& other) {
+      return std::abs(other.x() - at.x()) < 48.0 && std::abs(other.y() - at.y()) < 14.0;
+    })) {
+      at.y() += 15.0;
+    }
+    names_.push_back(at);
+    return Text(at, shape.text);
   }
 
  private:
@@ -188,6 +201,7 @@ class Pen {
 
   const Canvas& canvas_;
   bool point_names_;
+  std::vector<Eigen::Vector2d> names_;
 };
 
 double DepthOf(const Shape& shape, const Canvas& canvas) {
@@ -221,7 +235,7 @@ std::string DrawSvg(const kinematics::Machine& machine,
       options.height_px,
       Escaped(machine.layout().name),
       kStyle);
-  const Pen pen(canvas, options.point_names);
+  Pen pen(canvas, options.point_names);
   for (const Shape& shape : scene.shapes) svg += pen.Draw(shape);
   return svg + "</svg>\n";
 }

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
 
 #include "kompono/geometry/pose.hpp"
+#include "kompono/kinematics/branches.hpp"
 
 namespace kompono::exporting {
 namespace {
@@ -16,15 +18,6 @@ using kinematics::Machine;
 using kinematics::VectorXd;
 using Form = Shape::Form;
 using Frame = Machine::FrameView;
-
-void LeavesOf(const formula::Chain& chain, std::vector<std::string>* names) {
-  for (const formula::Item& item : chain) {
-    if (const auto* leaf = std::get_if<formula::Leaf>(&item)) names->push_back(leaf->Name());
-    if (const auto* fork = std::get_if<formula::Fork>(&item)) {
-      for (const formula::Chain& branch : fork->branches) LeavesOf(branch, names);
-    }
-  }
-}
 
 /// Points on a circle about z of the frame.
 std::vector<Eigen::Vector3d> Ring(const Pose<double>& X, double radius, double height) {
@@ -52,7 +45,8 @@ class SceneBuilder {
       : machine_(machine), z_(z), theta_(theta) {}
 
   Scene Build() {
-    CollectChains();
+    for (const kinematics::Branch& branch : kinematics::Branches(machine_))
+      CollectChain(branch.chain);
     Measure();
     AddMechanisms();
     for (const auto& [name, chain] : ends_) AddEnd(chain);
@@ -63,30 +57,16 @@ class SceneBuilder {
   /// One end with the frames of its own side, from the base outward; the end is the last.
   using Outward = std::vector<Frame>;
 
-  void CollectChains() {
-    std::vector<std::string> parts;
-    std::vector<std::string> tools;
-    LeavesOf(machine_.layout().formula.left, &parts);
-    LeavesOf(machine_.layout().formula.right, &tools);
-    for (const std::string& part : parts) CollectChain(part, tools.front());
-    for (const std::string& tool : tools) CollectChain(parts.front(), tool);
-  }
-
-  void CollectChain(const std::string& part, const std::string& tool) {
-    const Parsed<Machine> chain = machine_.Between(part, tool);
-    if (!chain) return;
-    VectorXd z = chain->home();
-    for (std::size_t i = 0; i < chain->coordinates().size(); ++i) {
-      const int at = machine_.FindCoordinate(chain->coordinates()[i].name);
-      if (at >= 0) z[static_cast<Eigen::Index>(i)] = z_[at];
-    }
-    Machine::SkeletonView skeleton = chain->Skeleton(z, theta_);
+  void CollectChain(const Machine& chain) {
+    const VectorXd z = kinematics::CoordinatesOn(chain, machine_, z_);
+    Machine::SkeletonView skeleton = chain.Skeleton(z, theta_);
     for (auto& point : skeleton.points) points_.emplace(point.name, point.p_M);
     for (auto& link : skeleton.links) {
       if (seen_.insert(link.from + " " + link.to + " " + link.kind).second) links_.push_back(link);
     }
+    Sample(chain, z);
     std::map<bool, Outward> sides;
-    for (Frame& frame : chain->Frames(z, theta_)) {
+    for (Frame& frame : chain.Frames(z, theta_)) {
       const bool side = frame.workpiece_side;
       sides[side].push_back(std::move(frame));
     }
@@ -94,6 +74,59 @@ class SceneBuilder {
       if (!outward.empty() && outward.back().kind == Frame::Kind::kEnd)
         ends_.emplace(outward.back().name, std::move(outward));
     }
+  }
+
+  /// Points of the skeletons at poses a little to all sides: they tell how rails run and which
+  /// struts change their length.
+  void Sample(const Machine& chain, const VectorXd& z) {
+    Eigen::AlignedBox3d box;
+    for (const auto& [name, p] : points_) box.extend(p);
+    const double length = points_.empty() ? 0.0 : 0.08 * box.diagonal().norm();
+    for (std::size_t i = 0; i < chain.coordinates().size(); ++i) {
+      for (const double sign : {-1.0, 1.0}) {
+        VectorXd moved = z;
+        moved[static_cast<Eigen::Index>(i)] +=
+            sign * (chain.coordinates()[i].rotary ? 0.1 : length);
+        const std::vector<Machine::SkeletonPoint> points = chain.Skeleton(moved, theta_).points;
+        if (!std::all_of(points.begin(), points.end(), [](const auto& point) {
+              return point.p_M.allFinite();
+            })) {
+          continue;  // out of reach
+        }
+        for (const auto& point : points) samples_[point.name].push_back(point.p_M);
+      }
+    }
+  }
+
+  [[nodiscard]] bool ChangesLength(const Machine::SkeletonLink& link) const {
+    const auto from = samples_.find(link.from);
+    const auto to = samples_.find(link.to);
+    if (from == samples_.end() || to == samples_.end()) return false;
+    const double now = (points_.at(link.from) - points_.at(link.to)).norm();
+    for (std::size_t i = 0; i < std::min(from->second.size(), to->second.size()); ++i) {
+      if (std::abs((from->second[i] - to->second[i]).norm() - now) > 1e-6 * now) return true;
+    }
+    return false;
+  }
+
+  /// From end to end of what the carriage passes in the samples, and a little more.
+  [[nodiscard]] std::vector<Eigen::Vector3d> Rail(const Machine::SkeletonLink& link) const {
+    std::vector<Eigen::Vector3d> passed{points_.at(link.from), points_.at(link.to)};
+    for (const std::string& end : {link.from, link.to}) {
+      const auto found = samples_.find(end);
+      if (found != samples_.end())
+        passed.insert(passed.end(), found->second.begin(), found->second.end());
+    }
+    // The pair of points furthest apart, from one end to the other.
+    const auto furthest = [&passed](const Eigen::Vector3d& from) {
+      return *std::max_element(passed.begin(), passed.end(), [&from](const auto& a, const auto& b) {
+        return (a - from).norm() < (b - from).norm();
+      });
+    };
+    const Eigen::Vector3d one = furthest(passed.front());
+    const Eigen::Vector3d other = furthest(one);
+    const Eigen::Vector3d beyond = 0.12 * (other - one);
+    return {one - beyond, other + beyond};
   }
 
   void Measure() {
@@ -138,41 +171,72 @@ class SceneBuilder {
   }
 
   void AddMechanisms() {
-    std::map<std::string, std::set<std::string>> platforms;  // block -> points
+    std::map<std::string, std::set<std::string>> plates;  // block -> points of its platform
+    std::map<std::string, std::set<std::string>> struts;
+    std::map<std::string, int> touched;  ///< how many lines of the platform meet in a point
     std::set<std::string> on_rail;
-    std::set<std::string> strut_ends;
     for (const Machine::SkeletonLink& link : links_) {
       const auto from = points_.find(link.from);
       const auto to = points_.find(link.to);
       if (from == points_.end() || to == points_.end()) continue;
+      const std::string block = link.from.substr(0, link.from.find('.'));
       std::vector<Eigen::Vector3d> line{from->second, to->second};
       if (link.kind == "rail") {
-        const Eigen::Vector3d beyond = 0.25 * (line[1] - line[0]);
-        line = {line[0] - beyond, line[1] + beyond};
+        line = Rail(link);
         on_rail.insert({link.from, link.to});
+      } else if (link.kind == "strut") {
+        struts[block].insert({link.from, link.to});
+        if (ChangesLength(link))
+          Add(Form::kLine, "cylinder", {line[0], line[0] + 0.55 * (line[1] - line[0])});
+      } else if (link.kind == "platform") {
+        ++touched[link.from];
+        ++touched[link.to];
+        plates[block].insert({link.from, link.to});
       }
-      if (link.kind == "strut") strut_ends.insert({link.from, link.to});
-      if (link.kind == "platform")
-        platforms[link.from.substr(0, link.from.find('.'))].insert({link.from, link.to});
       Add(Form::kLine, link.kind, std::move(line));
     }
-    for (const auto& [block, names] : platforms) {
-      std::vector<Eigen::Vector3d> corners;
-      for (const std::string& name : names) corners.push_back(points_.at(name));
-      if (corners.size() > 2) Add(Form::kBody, "plate", std::move(corners));
+    for (const auto& [block, names] : plates) {
+      std::set<std::string> corners;  // a single line stands on the plate
+      std::copy_if(names.begin(),
+                   names.end(),
+                   std::inserter(corners, corners.end()),
+                   [&touched](const std::string& name) { return touched[name] > 1; });
+      AddPlate("plate", corners, 0);
     }
+    for (const auto& [block, names] : struts) {
+      std::set<std::string> feet;
+      for (const std::string& name : names) {
+        if (!on_rail.contains(name) && !plates[block].contains(name) && Stands(name))
+          feet.insert(name);
+      }
+      AddPlate("foundation", feet, -2);
+    }
+    std::set<std::string> all_struts;
+    for (const auto& [block, names] : struts) all_struts.insert(names.begin(), names.end());
     for (const auto& [name, p] : points_) {
-      const bool strut = strut_ends.contains(name);
-      if (on_rail.contains(name) && !strut) continue;  // a rail's mark
-      const bool tool = name.ends_with(".tool");
+      if (on_rail.contains(name) && !all_struts.contains(name)) continue;  // a rail's mark
+      const char* kind = on_rail.contains(name) ? "carriage" : "joint";
       Add(Form::kDot,
-          tool                     ? "tool"
-          : on_rail.contains(name) ? "carriage"
-                                   : "joint",
+          name.ends_with(".tool") ? "tool" : kind,
           {p},
           1,
           name.substr(name.rfind('.') + 1));
     }
+  }
+
+  /// Whether a point is the same in all samples: a foot on the base.
+  [[nodiscard]] bool Stands(const std::string& name) const {
+    const auto found = samples_.find(name);
+    return found == samples_.end() ||
+           std::all_of(found->second.begin(), found->second.end(), [&](const auto& p) {
+             return (p - points_.at(name)).norm() < 1e-9 * scene_.size_mm;
+           });
+  }
+
+  void AddPlate(const std::string& kind, const std::set<std::string>& names, int layer) {
+    std::vector<Eigen::Vector3d> corners;
+    for (const std::string& name : names) corners.push_back(points_.at(name));
+    if (corners.size() > 2) Add(Form::kBody, kind, std::move(corners), layer);
   }
 
   [[nodiscard]] bool TurnsPart(const Outward& outward) const {
@@ -239,15 +303,20 @@ class SceneBuilder {
       const double height = (end.X_MC.Inverse() * station.p).z();
       discs[std::lround(height * 1e3)].push_back(station.p);
     }
+    const Eigen::Vector3d thick = 0.012 * scene_.size_mm * end.X_MC.R.col(2);
     for (const auto& [height, tips] : discs) {
       Eigen::Vector3d centre = Eigen::Vector3d::Zero();
       for (const Eigen::Vector3d& tip : tips) centre += tip / static_cast<double>(tips.size());
       std::vector<Eigen::Vector3d> body;
+      std::vector<Eigen::Vector3d> face;
       for (const Eigen::Vector3d& tip : tips) {
-        body.push_back(centre + 0.7 * (tip - centre));
+        const Eigen::Vector3d rim = centre + 0.7 * (tip - centre);
+        body.insert(body.end(), {rim - thick, rim + thick});
+        face.push_back(rim - thick);
         Add(Form::kLine, "pocket", {centre + 0.6 * (tip - centre), tip}, 1);
       }
       Add(Form::kBody, "disc", std::move(body), 1);
+      Add(Form::kBody, "disc-face", std::move(face), 1);
     }
     Add(Form::kDot, "tip", {end.X_MF.p}, 2);
   }
@@ -280,9 +349,10 @@ class SceneBuilder {
       const layout::Axis* axis = machine_.layout().FindAxis(frame.name);
       if (axis == nullptr) continue;
       const Eigen::Vector3d along = frame.X_MC.R.col(AxisOfLetter(axis->letter));
-      const Eigen::Vector3d& foot = frame.X_MC.p.norm() > 1e-9 || IsRotaryLetter(axis->letter)
-                                        ? frame.X_MC.p
-                                        : outward.back().X_MC.p;
+      // A main motion turns the end itself; other turns have an axis of their own.
+      const bool own =
+          IsRotaryLetter(axis->letter) ? !axis->main_motion : frame.X_MC.p.norm() > 1e-9;
+      const Eigen::Vector3d& foot = own ? frame.X_MC.p : outward.back().X_MC.p;
       const double length = 0.12 * scene_.size_mm;
       Add(IsRotaryLetter(axis->letter) ? Form::kArc : Form::kArrow,
           "axis",
@@ -297,6 +367,7 @@ class SceneBuilder {
   const VectorXd& theta_;
   Scene scene_;
   std::map<std::string, Eigen::Vector3d> points_;
+  std::map<std::string, std::vector<Eigen::Vector3d>> samples_;
   std::vector<Machine::SkeletonLink> links_;
   std::set<std::string> seen_, drawn_;
   std::map<std::string, Outward> ends_;

@@ -31,6 +31,7 @@ struct BlockMobility {
   std::string explanation;  ///< empty when both agree, else what the difference means
 };
 
+/// One entry for every mechanism, on whichever branch of the formula it is.
 [[nodiscard]] std::vector<BlockMobility> Mobility(const kinematics::Machine& machine);
 
 }  // namespace kompono::analysis
