@@ -180,6 +180,9 @@ ordered_json SheetJson(const Sheet& sheet) {
       entry["pairs"] = block.pairs;
       entry["loops"] = block.loops;
       entry["gruebler"] = block.gruebler;
+      entry["gruebler_in_space"] = block.spatial;
+      entry["idle_motions"] = block.idle;
+      entry["passive_constraints"] = block.passive;
     }
     entry["explanation"] = block.explanation;
     out["mechanisms"].push_back(std::move(entry));

@@ -260,6 +260,11 @@ TEST(KddTable1, MirroredMechanismsWithMovingHeads) {
                                    "larger_zone"));
 }
 
+TEST(KddTable1, ATailstockInPlaceOfTheSecondSpindleTakesMostOfItAway) {
+  EXPECT_THAT(OfShipped("kdd_tailstock"),
+              testing::ElementsAre("more_tools", "two_tools_at_once", "larger_zone"));
+}
+
 TEST(KddTable1, PlainLathesHaveNoneOfIt) {
   EXPECT_THAT(OfShipped("kdd_four_strut_lathe"), testing::IsEmpty());
   EXPECT_THAT(OfShipped("kdd_six_strut_lathe"), testing::IsEmpty());

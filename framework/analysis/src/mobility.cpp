@@ -66,15 +66,21 @@ int NumericMobility(const kinematics::Machine& machine,
 
 std::string Explain(const BlockMobility& mobility) {
   if (mobility.numeric < 0) return "the home pose is out of reach, so the rank could not be taken";
-  const int difference = mobility.gruebler - mobility.numeric;
-  if (!mobility.counted || difference == 0) return "";
-  if (difference > 0) {
+  if (mobility.idle > 0) {
     return fmt::format(
         "{} of the counted motions move no platform: struts that spin about themselves",
-        difference);
+        mobility.idle);
+  }
+  if (mobility.passive == 0) return "";
+  if (mobility.spatial != mobility.gruebler) {
+    return fmt::format(
+        "counted in space {}: {} constraints that keep the links in one plane repeat "
+        "others (passive constraints)",
+        mobility.spatial,
+        mobility.passive);
   }
   return fmt::format("{} of the counted constraints repeat others (passive constraints)",
-                     -difference);
+                     mobility.passive);
 }
 
 BlockMobility MobilityOf(const kinematics::Machine& machine,
@@ -92,11 +98,18 @@ BlockMobility MobilityOf(const kinematics::Machine& machine,
       mobility.pairs += count;
       freedoms += count * FreedomsOfPair(letter);
     }
-    const int space = structure.planar ? 3 : 6;
     mobility.counted = true;
     mobility.links = structure.links;
     mobility.loops = mobility.pairs - mobility.links + 1;
-    mobility.gruebler = space * (mobility.links - 1 - mobility.pairs) + freedoms;
+    const auto count = [&](int space) {
+      return space * (mobility.links - 1 - mobility.pairs) + freedoms;
+    };
+    mobility.gruebler = count(structure.planar ? 3 : 6);
+    mobility.spatial = count(6);
+    if (mobility.numeric >= 0) {
+      mobility.idle = std::max(0, mobility.gruebler - mobility.numeric);
+      mobility.passive = std::max(0, mobility.numeric - mobility.spatial);
+    }
   }
   mobility.explanation = Explain(mobility);
   return mobility;

@@ -28,6 +28,9 @@ struct BlockMobility {
   int pairs = 0;
   int loops = 0;
   int gruebler = 0;
+  int spatial = 0;  ///< the same count in space, if the mechanism is planar; else equal to gruebler
+  int idle = 0;     ///< counted motions that move no platform: struts spinning about themselves
+  int passive = 0;  ///< counted constraints that repeat others
   std::string explanation;  ///< empty when both agree, else what the difference means
 };
 
