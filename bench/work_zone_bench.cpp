@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 
+#include "kompono/analysis/dexterity.hpp"
 #include "kompono/analysis/pose_judge.hpp"
 #include "kompono/layout/layout.hpp"
 
@@ -23,54 +24,6 @@ using kompono::analysis::PoseCount;
 using kompono::analysis::PoseJudge;
 using kompono::analysis::Region;
 using kompono::kinematics::Machine;
-
-constexpr const char* kLayout = R"(
-kompono = 1
-name = "Hexapod"
-formula = "part O (XYZABC):struts tool"
-[block.struts]
-module = "hexapod_symmetric"
-parameters = { base_radius = 600, base_half_angle = 10, platform_radius = 250, platform_half_angle = 10 }
-home = { X = 0, Y = 0, Z = 900, A = 2, B = 3, C = 4 }
-[block.struts.drive.q1]
-range = [800, 1200]
-[block.struts.drive.q2]
-range = [800, 1200]
-[block.struts.drive.q3]
-range = [800, 1200]
-[block.struts.drive.q4]
-range = [800, 1200]
-[block.struts.drive.q5]
-range = [800, 1200]
-[block.struts.drive.q6]
-range = [800, 1200]
-)";
-
-constexpr std::array<std::uint64_t, 3> kSteps{100, 100, 100};
-
-const Machine& Hexapod() {
-  static const std::array<std::filesystem::path, 1> folders{
-      std::filesystem::path(KOMPONO_BINARY_DIR) / "lib/kompono/plugins"};
-  static const auto registry = kompono::plugin::Registry::Discover(folders);
-  static const std::unique_ptr<const Machine> machine = [] {
-    auto layout = kompono::layout::ParseLayout(kLayout, "bench.toml", registry);
-    if (!layout) {
-      std::fputs(kompono::RenderAll(layout.error(), {}).c_str(), stderr);
-      std::exit(1);
-    }
-    auto built = Machine::Build(std::move(*layout), registry);
-    if (!built) std::exit(1);
-    return std::make_unique<const Machine>(std::move(*built));
-  }();
-  return *machine;
-}
-
-Region Zone(const Machine& machine) {
-  return {.z = machine.home(),
-          .varied = {0, 1, 2},
-          .lower = {-500.0, -500.0, 500.0},
-          .upper = {500.0, 500.0, 1200.0}};
-}
 
 /// As one would write it for one machine: joints known, rotation taken once per pose.
 struct PlainHexapod {
@@ -110,6 +63,57 @@ struct PlainHexapod {
     return true;
   }
 };
+
+/// Joints by points, as measured machines have them.
+std::string LayoutText() {
+  std::string base;
+  std::string platform;
+  const PlainHexapod hexapod;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto add = [](std::string& text, const std::array<double, 3>& p) {
+      char number[128];
+      std::snprintf(number, sizeof number, "[%.17g, %.17g, %.17g], ", p[0], p[1], p[2]);
+      text += number;
+    };
+    add(base, hexapod.base[i]);
+    add(platform, hexapod.platform[i]);
+  }
+  std::string text =
+      "kompono = 1\nname = \"Hexapod\"\nformula = \"part O (XYZABC):struts tool\"\n"
+      "[block.struts]\nmodule = \"hexapod\"\n"
+      "home = { X = 0, Y = 0, Z = 900, A = 2, B = 3, C = 4 }\n"
+      "[block.struts.parameters]\nbase = [" +
+      base + "]\nplatform = [" + platform + "]\n";
+  for (int i = 1; i <= 6; ++i)
+    text += "[block.struts.drive.q" + std::to_string(i) + "]\nrange = [800, 1200]\n";
+  return text;
+}
+
+constexpr std::array<std::uint64_t, 3> kSteps{100, 100, 100};
+
+const Machine& Hexapod() {
+  static const std::array<std::filesystem::path, 1> folders{
+      std::filesystem::path(KOMPONO_BINARY_DIR) / "lib/kompono/plugins"};
+  static const auto registry = kompono::plugin::Registry::Discover(folders);
+  static const std::unique_ptr<const Machine> machine = [] {
+    auto layout = kompono::layout::ParseLayout(LayoutText(), "bench.toml", registry);
+    if (!layout) {
+      std::fputs(kompono::RenderAll(layout.error(), {}).c_str(), stderr);
+      std::exit(1);
+    }
+    auto built = Machine::Build(std::move(*layout), registry);
+    if (!built) std::exit(1);
+    return std::make_unique<const Machine>(std::move(*built));
+  }();
+  return *machine;
+}
+
+Region Zone(const Machine& machine) {
+  return {.z = machine.home(),
+          .varied = {0, 1, 2},
+          .lower = {-500.0, -500.0, 500.0},
+          .upper = {500.0, 500.0, 1200.0}};
+}
 
 std::uint64_t PlainCount(const Region& region) {
   static const PlainHexapod hexapod;
@@ -155,11 +159,41 @@ void Counted(benchmark::State& state, unsigned threads) {
   state.SetItemsProcessed(state.iterations() * Poses());
 }
 
-BENCHMARK(Plain)->Name("zone/baseline")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(Counted, one, 1)
-    ->Name("zone/one_core")
+/// With the condition number of every pose: plain code would need a Jacobian and a decomposition.
+void Conditioned(benchmark::State& state, unsigned threads) {
+  const Machine& machine = Hexapod();
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), Limits{});
+  const Region region = Zone(machine);
+  const double length = kompono::analysis::CharacteristicLength(*judge, 0);
+  constexpr std::array<std::uint64_t, 3> kFewer{50, 50, 50};
+  kompono::analysis::DexterityField field;
+  for (auto _ : state)
+    field = DexterityOver(*judge, 0, length, region, kFewer, {.threads = threads});
+  benchmark::DoNotOptimize(field);
+  state.SetItemsProcessed(state.iterations() * 50 * 50 * 50);
+}
+
+/// One pose after the other: exact derivatives and Eigen's SVD.
+void ConditionedOneByOne(benchmark::State& state) {
+  const Machine& machine = Hexapod();
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), Limits{});
+  const double length = kompono::analysis::CharacteristicLength(*judge, 0);
+  kompono::kinematics::VectorXd z = machine.home();
+  for (auto _ : state) {
+    z[0] = std::fmod(z[0] + 1.0, 100.0);
+    benchmark::DoNotOptimize(DexterityAt(*judge, 0, z, length).dexterity.condition);
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+BENCHMARK(ConditionedOneByOne)->Name("condition/baseline");
+BENCHMARK_CAPTURE(Conditioned, one, 1)->Name("condition/one_core")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Conditioned, two, 2)
+    ->Name("condition/two_cores")
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK(Plain)->Name("zone/baseline")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Counted, one, 1)->Name("zone/one_core")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Counted, two, 2)
     ->Name("zone/two_cores")
     ->Unit(benchmark::kMillisecond)

@@ -95,6 +95,7 @@ ExitCode Main(int argc, char** argv, Session& session) {
                          AddSchema,
                          AddDescribe,
                          AddSolve,
+                         AddAnalyze,
                          AddMeasure,
                          AddCalibrate,
                          AddImport,

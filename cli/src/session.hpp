@@ -74,6 +74,7 @@ void AddCheck(CLI::App& root, Session& session);
 void AddSchema(CLI::App& root, Session& session);
 void AddDescribe(CLI::App& root, Session& session);
 void AddSolve(CLI::App& root, Session& session);
+void AddAnalyze(CLI::App& root, Session& session);
 void AddMeasure(CLI::App& root, Session& session);
 void AddCalibrate(CLI::App& root, Session& session);
 void AddCatalog(CLI::App& root, Session& session);
