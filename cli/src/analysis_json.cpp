@@ -109,6 +109,22 @@ ordered_json DexterityJson(const Machine& machine, const MechanismDexterity& one
   return out;
 }
 
+ordered_json IndicesJson(const analysis::LayoutIndices& indices) {
+  ordered_json out{{"workspace_utilisation", indices.utilisation},
+                   {"space_efficiency", indices.space_efficiency},
+                   {"orientation_space", nullptr},
+                   {"orientation_angle", nullptr}};
+  if (!indices.orientation_space) return out;
+  out["orientation_space"] = *indices.orientation_space;
+  out["orientation_angle"] = indices.orientation_angle.value_or(0.0);
+  out["tilt_deg"] = indices.tilt_rad * kDegPerRad;
+  for (const analysis::LayoutIndices::Range& range : indices.ranges) {
+    out["ranges_deg"][range.coordinate] = {range.lower_rad * kDegPerRad,
+                                           range.upper_rad * kDegPerRad};
+  }
+  return out;
+}
+
 ordered_json SingularJson(const AnalysisResult& result) {
   const analysis::SingularSet& set = *result.singular;
   const Machine& machine = *result.machine;
@@ -206,6 +222,7 @@ ordered_json AnalysisJson(const AnalysisResult& result) {
     for (const MechanismDexterity& one : result.dexterity)
       out["dexterity"].push_back(DexterityJson(machine, one));
   }
+  if (result.indices) out["indices"] = IndicesJson(*result.indices);
   if (result.singular) out["singularities"] = SingularJson(result);
   if (result.path) out["path"] = PathJson(result);
   if (!result.point_path.empty()) {

@@ -196,6 +196,24 @@ std::string DexterityText(const AnalysisResult& result) {
   return out;
 }
 
+std::string IndicesText(const analysis::LayoutIndices& indices) {
+  std::string out = fmt::format("\nindices\n  workspace utilisation {}, space efficiency {}\n",
+                                Short(indices.utilisation),
+                                Short(indices.space_efficiency));
+  if (!indices.orientation_space) return out;
+  out += fmt::format("  orientation space {} with ±{} deg, orientation angle {}\n",
+                     Short(*indices.orientation_space),
+                     Brief(indices.tilt_rad * kDegPerRad),
+                     Short(indices.orientation_angle.value_or(0.0)));
+  for (const analysis::LayoutIndices::Range& range : indices.ranges) {
+    out += fmt::format("    {} {} .. {} deg at home\n",
+                       range.coordinate,
+                       Tenths(range.lower_rad * kDegPerRad),
+                       Tenths(range.upper_rad * kDegPerRad));
+  }
+  return out;
+}
+
 std::string DistanceText(const AnalysisResult& result) {
   const analysis::SingularityDistance& home = *result.home_distance;
   if (home.type == 0) return "  nothing singular near home\n";
@@ -314,6 +332,7 @@ std::string AnalysisText(const Console& console, const AnalysisResult& result) {
   std::string out = result.machine->layout().name + "\n\n";
   if (result.zone) out += ZoneText(console, result);
   if (result.zone) out += DexterityText(result);
+  if (result.indices) out += IndicesText(*result.indices);
   if (result.singular) out += SingularText(console, result);
   out += SlicesText(result);
   if (result.path) out += PathText(console, result);

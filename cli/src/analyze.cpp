@@ -36,11 +36,12 @@ constexpr const char* kExamples =
 struct Options {
   std::string file;
   bool zone = false, dexterity = false, singularities = false, geometry = false, map = false;
+  bool indices = false;
   bool any_side = false, no_ranges = false, force = false;
   std::vector<std::string> over, region, at, slice, joint;
   std::string path, point, box, cylinder, csv, ply, svg;
   std::optional<double> strut_diameter, clearance, length;
-  double tolerance_percent = 0.5;
+  double tolerance_percent = 0.5, tilt_deg = 15.0;
   unsigned threads = 0;
 };
 
@@ -49,7 +50,7 @@ std::atomic<bool>& Interrupted() {
   return interrupted;
 }
 
-extern "C" void OnInterrupt(int /*signal*/) {
+void OnInterrupt(int /*signal*/) {
   Interrupted() = true;
   // A second Ctrl-C ends the program as usual.
   std::signal(SIGINT, SIG_DFL);
@@ -87,7 +88,8 @@ void ReadSpans(const Machine& machine,
     auto found = std::find_if(task.over.begin(), task.over.end(), [&name](const auto& span) {
       return span.coordinate == name;
     });
-    if (found == task.over.end()) found = task.over.insert(found, {.coordinate = name});
+    if (found == task.over.end())
+      found = task.over.insert(found, analysis::Span{.coordinate = name});
     found->lower = Inward(range->lower, angle);
     found->upper = Inward(range->upper, angle);
   }
@@ -105,6 +107,9 @@ void CompleteSpans(const Machine& machine, const Options& options, AnalysisTask&
     });
     if (!known && task.over.size() < 3) task.over.push_back({.coordinate = name});
   }
+  std::sort(task.over.begin(), task.over.end(), [&machine](const auto& a, const auto& b) {
+    return machine.FindCoordinate(a.coordinate) < machine.FindCoordinate(b.coordinate);
+  });
 }
 
 void ReadHeld(const Machine& machine,
@@ -163,10 +168,14 @@ std::optional<std::vector<double>> ReadSizes(const std::string& option,
   return out;
 }
 
-Diagnostic TableProblem(const SourceSpan& place, std::string message, std::string help) {
+Diagnostic TableProblem(const std::string& file,
+                        const SourceSpan& place,
+                        std::string message,
+                        std::string help) {
   return {.code = std::string(codes::kBadTable.code),
-          .message = std::move(message),
+          .file = file,
           .span = place,
+          .message = std::move(message),
           .help = std::move(help)};
 }
 
@@ -191,7 +200,8 @@ Diagnostics ReadPath(const Machine& machine, const std::string& file, AnalysisTa
       columns.emplace_back(false, static_cast<std::size_t>(coordinate));
     } else {
       problems.push_back(
-          TableProblem(table->heading_places[i],
+          TableProblem(file,
+                       table->heading_places[i],
                        fmt::format("'{}' is neither a pose component nor a coordinate", name),
                        "columns are x y z a b c of the tool, or the machine's coordinates"));
     }
@@ -215,13 +225,14 @@ Diagnostics ReadPath(const Machine& machine, const std::string& file, AnalysisTa
       SourceSpan place = table->heading_places.front();
       place.line = table->lines[k];
       problems.push_back(TableProblem(
-          place, "no coordinates for this pose", "look at it with kompono solve --pose"));
+          file, place, "no coordinates for this pose", "look at it with kompono solve --pose"));
       break;
     }
     task.path.push_back(z);
   }
   if (problems.empty() && task.path.size() < 2 && task.point.empty()) {
-    problems.push_back(TableProblem(table->heading_places.front(),
+    problems.push_back(TableProblem(file,
+                                    table->heading_places.front(),
                                     "a path needs at least two rows",
                                     "for one pose use --geometry --at"));
   }
@@ -238,7 +249,9 @@ Parsed<AnalysisTask> TaskOf(const Machine& machine, const Options& options) {
                     .regular = !options.any_side,
                     .tolerance = options.tolerance_percent / 100.0,
                     .length_mm = options.length,
-                    .map = options.map};
+                    .map = options.map,
+                    .indices = options.indices,
+                    .tilt_rad = options.tilt_deg / kDegPerRad};
   Diagnostics problems;
   ReadSpans(machine, options, task, problems);
   CompleteSpans(machine, options, task);
@@ -249,8 +262,9 @@ Parsed<AnalysisTask> TaskOf(const Machine& machine, const Options& options) {
   if (problems.empty() && !options.path.empty()) problems = ReadPath(machine, options.path, task);
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   const bool nothing = !task.zone && !task.dexterity && !task.singularities && !task.geometry &&
-                       task.slices.empty() && task.path.empty() && task.point.empty();
-  if (nothing) task.zone = task.dexterity = task.singularities = true;
+                       !task.indices && task.slices.empty() && task.path.empty() &&
+                       task.point.empty();
+  if (nothing) task.zone = task.dexterity = task.indices = task.singularities = true;
   if (!task.slices.empty()) task.singularities = true;
   task.control.threads = options.threads;
   return task;
@@ -339,7 +353,7 @@ void AddWhere(CLI::App& command, Session& session, Options& options) {
   command
       .add_option("--point",
                   options.point,
-                  "Where this point goes: struts.joint1, or struts.base1:struts.joint1:0.25")
+                  "Where a point goes: struts.joint1, or A:B:0.25 on the way from A to B")
       ->type_name("POINT");
 }
 
@@ -372,6 +386,9 @@ void AddLimits(CLI::App& command, Options& options) {
   command.add_option("--length", options.length, "What 1 rad counts in conditions, mm; else best")
       ->type_name("MM")
       ->check(CLI::PositiveNumber);
+  command.add_option("--tilt", options.tilt_deg, "Of the orientation space index, deg (15)")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 180.0));
   command.add_option("--threads", options.threads, "Else all cores")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));

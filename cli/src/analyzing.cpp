@@ -114,7 +114,7 @@ Diagnostics FindSlices(const AnalysisTask& task, AnalysisResult& out) {
 }
 
 Diagnostics FindZone(const AnalysisTask& task, AnalysisResult& out) {
-  if (task.zone || task.dexterity) {
+  if (task.zone || task.dexterity || task.indices) {
     out.zone = analysis::ComputeZone(*out.function,
                                      {.tolerance = task.tolerance, .control = task.control});
     out.stopped = out.zone->stopped;
@@ -126,6 +126,9 @@ Diagnostics FindZone(const AnalysisTask& task, AnalysisResult& out) {
     region.upper = out.zone->upper;
     FindDexterity(task, region, out);
   }
+  if (task.indices && HasBodies(*out.machine, out.function->region()))
+    out.indices =
+        analysis::IndicesOf(*out.judge, *out.function, *out.zone, task.tilt_rad, 40, task.control);
   if (task.singularities) {
     // Within reach and ranges: with the box that was searched, not with home's side only.
     const auto function = ZoneFunction::Make(*out.judge, out.function->region(), true);
@@ -165,7 +168,7 @@ Parsed<AnalysisResult> Analyze(const Machine& machine, const AnalysisTask& task)
   auto judge = PoseJudge::Make(machine, machine.nominal(), task.limits);
   if (!judge) return tl::unexpected(judge.error());
   out.judge = std::make_shared<const PoseJudge>(std::move(*judge));
-  if (task.zone || task.dexterity || task.singularities || !task.slices.empty()) {
+  if (task.zone || task.dexterity || task.indices || task.singularities || !task.slices.empty()) {
     const auto region = analysis::RegionOf(machine, task.over, task.at);
     if (!region) return tl::unexpected(region.error());
     auto function = ZoneFunction::Make(*out.judge, *region, task.regular);

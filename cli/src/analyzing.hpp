@@ -13,6 +13,7 @@
 
 #include "kompono/analysis/dexterity.hpp"
 #include "kompono/analysis/geometry_numbers.hpp"
+#include "kompono/analysis/indices.hpp"
 #include "kompono/analysis/inscribed.hpp"
 #include "kompono/analysis/singularities.hpp"
 #include "kompono/analysis/work_zone.hpp"
@@ -34,7 +35,9 @@ struct AnalysisTask {
   std::optional<std::vector<double>> cylinder;  ///< diameter, height
   double tolerance = 0.005;
   std::optional<double> length_mm;  ///< characteristic length
-  bool map = false;                 ///< condition on every slice
+  bool map = false;                 ///< condition over zone and slices
+  bool indices = false;
+  double tilt_rad = 0.0;  ///< of the orientation space index
   analysis::RunControl control;
 };
 
@@ -69,6 +72,7 @@ struct AnalysisResult {
   std::vector<FittedBody> bodies;
   std::vector<SliceResult> slices;
   std::vector<MechanismDexterity> dexterity;
+  std::optional<analysis::LayoutIndices> indices;
   std::optional<analysis::SingularSet> singular;
   std::optional<analysis::SingularityDistance> home_distance;
   std::optional<analysis::PathReport> path;
