@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 
 namespace kompono::analysis {
@@ -113,7 +115,7 @@ std::vector<Point> SurfaceOf(BodyShape shape, std::size_t n) {
     const double z = n == 3 ? coordinate(k) : 0.0;
     if (shape == BodyShape::kCylinder) {
       for (int a = 0; a < 48; ++a) {
-        const double angle = 2.0 * 3.14159265358979323846 * a / 48.0;
+        const double angle = 2.0 * std::numbers::pi * a / 48.0;
         for (const double radius : {0.5, 0.25}) {
           out.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
         }
@@ -283,16 +285,18 @@ InscribedBody LargestInside(const ZoneFunction& function,
   climb.Improve(centre, scale, step, limit);
   out.centre.assign(centre.begin(), centre.begin() + static_cast<std::ptrdiff_t>(n));
   // Samples can miss a dent; the proof does not. A little smaller until it is given.
-  for (double shrink = 2e-4; shrink < 0.9 && !control.Stopped(); shrink *= 2.0) {
+  double shrink = 2e-4;
+  while (shrink < 0.9 && !control.Stopped()) {
     out.size.clear();
     out.content = 1.0;
     for (const double p : proportions) {
       out.size.push_back(p * scale * (1.0 - shrink));
       out.content *= out.size.back();
     }
-    if (shape == BodyShape::kCylinder && n >= 2) out.content *= 0.78539816339744830962;
+    if (shape == BodyShape::kCylinder && n >= 2) out.content *= std::numbers::pi / 4.0;
     out.found = ProvenInside(function, shape, out.centre, out.size, control);
     if (out.found) break;
+    shrink *= 2.0;
   }
   return out;
 }

@@ -17,9 +17,9 @@ namespace kompono::analysis {
 struct Interval {
   double lower = 0.0, upper = 0.0;
 
-  Interval() = default;
+  constexpr Interval() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): numbers mix freely with intervals.
-  Interval(double value) : lower(value), upper(value) {}
+  constexpr Interval(double value) : lower(value), upper(value) {}
   constexpr Interval(double from, double to) : lower(from), upper(to) {}
 
   [[nodiscard]] double Middle() const { return 0.5 * lower + 0.5 * upper; }

@@ -214,7 +214,7 @@ namespace {
 /// column[begin, end) = from + i * step for i = 0, 1, …
 void FillRamp(double* column, std::size_t begin, std::size_t end, double from, double step) {
   std::size_t k = begin;
-  // Recomputed from the index often enough that no rounding gathers.
+  // From the index, not by adding up: no rounding gathers.
   for (; k + lanes::kCount <= end; k += lanes::kCount) {
     const auto i = static_cast<double>(k - begin);
     lanes::Store(column + k, lanes::Number{from + i * step, from + (i + 1.0) * step});

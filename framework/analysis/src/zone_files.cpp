@@ -54,8 +54,10 @@ std::string Axes(const ZonePicture& picture, const Frame& frame) {
                   (frame.upper[1] - frame.lower[1]) * frame.scale);
   for (std::size_t i = 0; i < 2; ++i) {
     const double step = TickStep(frame.upper[i] - frame.lower[i]);
-    for (double at = std::ceil(frame.lower[i] / step) * step; at <= frame.upper[i] + 1e-9 * step;
-         at += step) {
+    const double first = std::ceil(frame.lower[i] / step) * step;
+    const int marks = static_cast<int>((frame.upper[i] - first) / step + 1e-9) + 1;
+    for (int mark = 0; mark < marks; ++mark) {
+      const double at = first + mark * step;
       const double value = std::abs(at) < 1e-9 * step ? 0.0 : at;
       if (i == 0) {
         out += fmt::format("<text x='{:.1f}' y='{:.1f}' class='x'>{:g}</text>\n",
