@@ -3,7 +3,9 @@
 
 #include "identifiability.hpp"
 #include "least_squares.hpp"
+#include "pose_rows.hpp"
 #include "residuals.hpp"
+#include "robust.hpp"
 #include "selection.hpp"
 #include "statistics.hpp"
 #include <fmt/format.h>
@@ -12,14 +14,36 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+
+#include <Eigen/Cholesky>
 
 #include "kompono/calibration/codes.hpp"
 
 namespace kompono::calibration {
 namespace {
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+constexpr std::size_t kCoarseRows = 1500;  ///< that come before a fit of many more
+constexpr std::size_t kRankRows = 3000;
+constexpr std::size_t kWordRows = 200;
+
+/// Covariance of the unknowns that are not held, for a regular H.
+Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& H, const std::vector<bool>& held) {
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index i = 0; i < H.rows(); ++i) {
+    if (!held[static_cast<std::size_t>(i)]) active.push_back(i);
+  }
+  const Eigen::MatrixXd of_active = H(active, active);
+  const Eigen::VectorXd norm = of_active.diagonal().cwiseSqrt().cwiseInverse();
+  const auto n = static_cast<Eigen::Index>(active.size());
+  const Eigen::MatrixXd unit = norm.asDiagonal() * of_active * norm.asDiagonal();
+  const Eigen::MatrixXd inverse =
+      norm.asDiagonal() * unit.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * norm.asDiagonal();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(H.rows(), H.cols());
+  out(active, active) = inverse;
+  return out;
+}
 
 /// Which rows are kept out of the fit: the file's choice and, of the others, a drawn fraction.
 std::vector<bool> HeldOut(const MeasurementSet& set, const IdentifyOptions& options) {
@@ -73,23 +97,27 @@ class Identification {
                                 selection_.nominal.size()));
     }
     const std::vector<bool> held_out = HeldOut(set_, options_);
+    rows_.resize(set_.measurements.size());
     for (std::size_t i = 0; i < set_.measurements.size(); ++i) {
       const Measurement& m = set_.measurements[i];
-      rows_.push_back({RowModel(machine_, m, options_.default_sigma_mm, options_.default_sigma_rad),
-                       held_out[i],
-                       {}});
+      rows_[i].held_out = held_out[i];
       if (held_out[i]) continue;
+      fitted_.push_back(i);
       report_.numbers += m.Numbers();
       const bool turned = m.kind == MeasurementKind::kPose;
       report_.sigma_assumed |= !m.sigma_mm || (turned && !m.sigma_rad);
     }
     report_.sigma_assumed |= set_.relative_weights;
-    for (JudgedRow& row : rows_) {
-      if (!row.held_out) fitted_.push_back(&row.model);
-    }
     report_.rows_fitted = static_cast<int>(fitted_.size());
     report_.rows_held_out = static_cast<int>(rows_.size() - fitted_.size());
     if (fitted_.empty()) return Refuse(codes::kNothingFitted.code, "no row is left for the fit");
+    poses_ = std::make_unique<PoseRows>(machine_,
+                                        set_,
+                                        selection_.free,
+                                        RowNoise{.default_sigma_mm = options_.default_sigma_mm,
+                                                 .default_sigma_rad = options_.default_sigma_rad,
+                                                 .drive_sigma_mm = options_.drive_sigma_mm,
+                                                 .drive_sigma_rad = options_.drive_sigma_rad});
     return true;
   }
 
@@ -101,48 +129,96 @@ class Identification {
 
   /// Every row needs a pose before the solver starts; those that have none are named, all of them.
   bool FindStarts() {
-    const RowModel* neighbour = nullptr;
+    const std::vector<kinematics::SolveStatus> status = poses_->Start(report_.theta_before);
+    const std::vector<PoseRows::Judged> before = poses_->Judge(report_.theta_before);
     bool all = true;
-    for (JudgedRow& row : rows_) {
-      const Measurement& m = row.model.measurement();
-      const RowModel::Prediction prediction = row.model.FindStart(report_.theta_before, neighbour);
-      if (prediction.ok()) {
-        row.before = row.model.Errors(prediction);
-        neighbour = &row.model;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (status[k] == kinematics::SolveStatus::kConverged && before[k].ok) {
+        rows_[k].before = before[k].errors;
         continue;
       }
       all = false;
-      report_.diagnostics.push_back(
-          AboutRow(set_,
-                   m,
-                   Severity::kError,
-                   codes::kNoPose.code,
-                   fmt::format("row {}: the machine has no pose at these readings ({})",
-                               m.row,
-                               Name(prediction.status())),
-                   "check the readings, their units and the layout's drive zeros"));
+      const Measurement& m = set_.measurements[k];
+      report_.diagnostics.push_back(AboutRow(
+          set_,
+          m,
+          Severity::kError,
+          codes::kNoPose.code,
+          fmt::format(
+              "row {}: the machine has no pose at these readings ({})", m.row, Name(status[k])),
+          "check the readings, their units and the layout's drive zeros"));
     }
     if (!all) report_.status = IdentifyStatus::kForwardFailed;
     return all;
   }
 
+  [[nodiscard]] bool Rejects() const {
+    if (options_.outliers == Outliers::kAutomatic) return !set_.relative_weights;
+    return options_.outliers == Outliers::kReject;
+  }
+
   void Fit() {
+    LeastSquares problem{.rows = poses_.get(),
+                         .selection = &selection_,
+                         .chosen = Some(kCoarseRows),
+                         .weights = {},
+                         .gauge = Eigen::MatrixXd(selection_.size(), 0),
+                         .max_iterations = options_.max_iterations};
     Eigen::VectorXd u = selection_.Unknowns(report_.theta_before);
-    const Eigen::MatrixXd no_gauge(selection_.size(), 0);
-    struct Fit fit = SolveLeastSquares(fitted_, selection_, u, no_gauge, options_.max_iterations);
-    report_.cost_before = fit.cost_before;
+    if (problem.chosen.size() < fitted_.size()) {
+      // Some of the rows lead almost to the end; the others then need one pass or two.
+      const RobustFit coarse = FitOf(problem, u);
+      if (coarse.fit.converged) u = coarse.fit.u;
+      Keep(coarse.fit);
+    }
+    problem.chosen = fitted_;
+    RobustFit robust = FitOf(problem, u);
+    if (robust.too_many) WarnOfTooMany();
+    for (const std::size_t k : robust.rejected) rows_[k].rejected = true;
+    std::erase_if(fitted_, [this](std::size_t k) { return rows_[k].rejected; });
+    for (const std::size_t k : robust.rejected) {
+      report_.rejected.push_back(set_.measurements[k].row);
+      report_.numbers -= set_.measurements[k].Numbers();
+    }
+    report_.rows_fitted = static_cast<int>(fitted_.size());
+    struct Fit fit = std::move(robust.fit);
+    report_.cost_before = CostOf(rows_);
     Keep(fit);
-    RankAnalysis analysis = Analyze(fit.u);
+    RankAnalysis analysis = Analyze(fit);
     if (analysis.gauge.cols() > 0 && fit.converged) {
       // The smallest change among all equally good ones: take the part along the null space out
       // and converge again with it held at zero.
       u = fit.u - analysis.gauge * (analysis.gauge.transpose() * fit.u);
-      fit = SolveLeastSquares(fitted_, selection_, u, analysis.gauge, options_.max_iterations);
+      problem.chosen = fitted_;
+      problem.gauge = analysis.gauge;
+      fit = SolveLeastSquares(problem, u);
       Keep(fit);
-      analysis = Analyze(fit.u);
+      analysis = Analyze(fit);
     }
     report_.theta_after = selection_.Theta(fit.u.data());
     Judge(fit, analysis);
+  }
+
+  RobustFit FitOf(const LeastSquares& problem, const Eigen::VectorXd& u) {
+    if (Rejects()) return SolveRobustly(problem, u, !report_.sigma_assumed);
+    return {.fit = SolveLeastSquares(problem, u), .rejected = {}};
+  }
+
+  /// At most `most` of the fitted rows, evenly spread.
+  [[nodiscard]] std::vector<std::size_t> Some(std::size_t most) const {
+    const std::size_t stride = (fitted_.size() + most - 1) / most;
+    std::vector<std::size_t> some;
+    for (std::size_t i = 0; i < fitted_.size(); i += stride) some.push_back(fitted_[i]);
+    return some;
+  }
+
+  void WarnOfTooMany() {
+    report_.diagnostics.push_back(
+        {.severity = Severity::kWarning,
+         .code = codes::kTooManyOutliers.code,
+         .file = set_.file,
+         .message = "more than a third of the rows stand out, so that none was left out",
+         .help = "check units and columns of the file, or give larger deviations"});
   }
 
   void Keep(const struct Fit& fit) {
@@ -152,36 +228,43 @@ class Identification {
     report_.solver_message = fit.message;
   }
 
-  RankAnalysis Analyze(const Eigen::VectorXd& u) {
-    const Eigen::VectorXd theta = selection_.Theta(u.data());
-    Eigen::Index priors = 0;
-    for (const auto& prior : selection_.prior) priors += prior ? 1 : 0;
-    RowMajorMatrix J = RowMajorMatrix::Zero(report_.numbers + priors, selection_.size());
-    Eigen::Index at = 0;
-    for (const RowModel* row : fitted_) {
-      const RowModel::Prediction prediction = row->Predict(theta, true);
-      if (prediction.ok()) {
-        row->Jacobian(prediction,
-                      selection_.free,
-                      selection_.scale,
-                      J.block(at, 0, row->size(), selection_.size()));
-      }
-      at += row->size();
-    }
+  /// Rank and null space from exact derivatives: of all rows, or of so many that full rank on them
+  /// is full rank on all; the covariance is of all.
+  RankAnalysis Analyze(const struct Fit& fit) {
+    const Eigen::VectorXd theta = selection_.Theta(fit.u.data());
     at_bound_.assign(selection_.free.size(), false);
+    Eigen::Index priors = 0;
     for (Eigen::Index i = 0; i < selection_.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (selection_.prior[k]) J(at++, i) = selection_.scale[i] / *selection_.prior[k];
+      if (selection_.prior[k]) ++priors;
       if (!selection_.bounds[k]) continue;
       const auto& [lower, upper] = *selection_.bounds[k];
       const double value = theta[selection_.free[k]];
       const double close = 1e-9 * (upper - lower);
       at_bound_[k] = value <= lower + close || value >= upper - close;
     }
-    report_.dof = static_cast<int>(J.rows());
-    RankAnalysis analysis = AnalyzeRank(J, at_bound_, options_.rank_threshold);
+    const auto analyze = [&](const std::vector<std::size_t>& rows) {
+      const Eigen::MatrixXd triangle = poses_->Triangle(theta, rows, {}, selection_.scale);
+      Eigen::MatrixXd J = Eigen::MatrixXd::Zero(triangle.rows() + priors, selection_.size());
+      J.topRows(triangle.rows()) = triangle;
+      Eigen::Index at = triangle.rows();
+      for (Eigen::Index i = 0; i < selection_.size(); ++i) {
+        const std::optional<double>& prior = selection_.prior[static_cast<std::size_t>(i)];
+        if (prior) J(at++, i) = selection_.scale[i] / *prior;
+      }
+      return AnalyzeRank(J, at_bound_, options_.rank_threshold);
+    };
+    const std::vector<std::size_t> some = Some(kRankRows);
+    RankAnalysis analysis = analyze(some);
+    if (some.size() < fitted_.size()) {
+      if (analysis.gauge.cols() > 0) {
+        analysis = analyze(fitted_);
+      } else {
+        analysis.covariance = InverseOf(fit.H, at_bound_);
+      }
+    }
     report_.rank = static_cast<int>(analysis.rank);
-    report_.dof -= report_.rank;
+    report_.dof = report_.numbers + static_cast<int>(priors) - report_.rank;
     report_.scaled_condition = analysis.condition;
     return analysis;
   }
@@ -192,9 +275,10 @@ class Identification {
     report_.status =
         analysis.gauge.cols() > 0 ? IdentifyStatus::kRankDeficient : IdentifyStatus::kConverged;
     report_.unidentifiable =
-        DescribeNullSpace(analysis, machine_, selection_, fitted_, report_.theta_after);
-    JudgeParameters(machine_, selection_, analysis, at_bound_, options_, rows_, &report_);
-    JudgeRows(set_, rows_, report_.theta_after, &report_);
+        DescribeNullSpace(analysis, machine_, selection_, Models(analysis), report_.theta_after);
+    JudgeParameters(machine_, selection_, analysis, at_bound_, options_, &report_);
+    JudgeTool(fitted_, poses_.get(), &report_);
+    JudgeRows(set_, rows_, report_.theta_after, poses_.get(), &report_);
     if (report_.status == IdentifyStatus::kForwardFailed) return;
     if (!fit.converged) {
       report_.status = IdentifyStatus::kIterationLimit;
@@ -214,12 +298,43 @@ class Identification {
     if (report_.ok()) WarnOfDoubts(set_, selection_, &report_);
   }
 
+  /// Rows for the words about the null space, if there is one.
+  std::vector<RowModel*> Models(const RankAnalysis& analysis) {
+    std::vector<RowModel*> pointers;
+    if (analysis.gauge.cols() == 0) return pointers;
+    models_.clear();
+    for (const std::size_t k : Some(kWordRows)) {
+      models_.emplace_back(
+          machine_, set_.measurements[k], options_.default_sigma_mm, options_.default_sigma_rad);
+      models_.back().StartAt(poses_->coordinates(k), poses_->second_coordinates(k));
+    }
+    for (RowModel& model : models_) pointers.push_back(&model);
+    return pointers;
+  }
+
+  /// C of the fitted rows at the start; the priors are 0 there or nearly so.
+  [[nodiscard]] double CostOf(const std::vector<JudgedRow>& rows) const {
+    double cost = 0.0;
+    for (const std::size_t k : fitted_) {
+      const RowErrors& errors = rows[k].before;
+      const Measurement& m = set_.measurements[k];
+      const double mm = m.sigma_mm.value_or(options_.default_sigma_mm);
+      const double rad = m.sigma_rad.value_or(options_.default_sigma_rad);
+      cost += 0.5 * errors.value.head(errors.lengths).squaredNorm() / (mm * mm);
+      cost +=
+          0.5 * errors.value.tail(errors.value.size() - errors.lengths).squaredNorm() / (rad * rad);
+    }
+    return cost;
+  }
+
   const kinematics::Machine& machine_;
   const MeasurementSet& set_;
   const IdentifyOptions& options_;
   Selection selection_;
   std::vector<JudgedRow> rows_;
-  std::vector<RowModel*> fitted_;
+  std::vector<std::size_t> fitted_;
+  std::vector<RowModel> models_;
+  std::unique_ptr<PoseRows> poses_;
   std::vector<bool> at_bound_;
   CalibrationReport report_;
 };

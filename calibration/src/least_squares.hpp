@@ -2,15 +2,13 @@
 #ifndef KOMPONO_CALIBRATION_SRC_LEAST_SQUARES_HPP_
 #define KOMPONO_CALIBRATION_SRC_LEAST_SQUARES_HPP_
 
-#include "residuals.hpp"
+#include "pose_rows.hpp"
 #include "selection.hpp"
 
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
-
-#include "kompono/calibration/identification.hpp"
 
 namespace kompono::calibration {
 
@@ -20,18 +18,24 @@ struct Fit {
   std::string message;
   int iterations = 0;
   double cost_before = 0.0,
-         cost_after = 0.0;  ///< 1/2 Σ r², gauge rows included (0 at the solution)
+         cost_after = 0.0;      ///< 1/2 Σ w r², gauge rows included (0 at the solution)
+  std::vector<double> squares;  ///< whitened |r|² of the rows of the set, at the solution
+  Eigen::MatrixXd H;            ///< by u, of rows and priors; symmetric
   double solver_ms = 0.0;
 };
 
-/// Levenberg-Marquardt over the whitened residuals of `rows` and the priors, from `u` on. `gauge`:
-/// orthonormal columns along which u must stay 0; no column for none. The rows' starting
-/// coordinates follow the accepted steps.
-[[nodiscard]] Fit SolveLeastSquares(const std::vector<RowModel*>& rows,
-                                    const Selection& selection,
-                                    const Eigen::VectorXd& u,
-                                    const Eigen::MatrixXd& gauge,
-                                    int max_iterations);
+/// What is minimised: rows with weights, priors, and directions in which u must stay 0.
+struct LeastSquares {
+  PoseRows* rows = nullptr;
+  const Selection* selection = nullptr;
+  std::vector<std::size_t> chosen;  ///< rows that count
+  std::vector<double> weights;      ///< per row of the set; empty: all 1
+  Eigen::MatrixXd gauge;            ///< orthonormal columns; none: no column
+  int max_iterations = 100;
+};
+
+/// Levenberg-Marquardt on the reduced normal equations from `u` on; bounds as an active set.
+[[nodiscard]] Fit SolveLeastSquares(const LeastSquares& problem, const Eigen::VectorXd& u);
 
 }  // namespace kompono::calibration
 

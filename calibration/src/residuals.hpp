@@ -59,6 +59,11 @@ class RowModel {
   /// measured pose. The prediction tells why if none is found.
   Prediction FindStart(const Eigen::VectorXd& theta, const RowModel* neighbour);
   [[nodiscard]] Prediction Predict(const Eigen::VectorXd& theta, bool with_derivatives) const;
+  /// The next predictions start here.
+  void StartAt(const Eigen::VectorXd& z, const Eigen::VectorXd& z_second) {
+    start_ = z;
+    second_start_ = z_second;
+  }
   /// The next predictions start where this one ended.
   void StartFrom(const Prediction& prediction);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "statistics.hpp"
 
+#include "distributions.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Normal deviates larger than this happen once in 3.5 million.
 constexpr double kSurelyWrongSigmas = 5.0;
 constexpr double kFarFromNominalTolerances = 20.0;
+constexpr std::size_t kMostToolRows = 200;  ///< enough for a root mean square
 
 struct Sums {
   int count = 0;
@@ -58,13 +60,6 @@ double RobustSigma(std::vector<double> values) {
   return 1.4826 * *middle;
 }
 
-/// Upper 0.1 % point of chi²/dof, Wilson and Hilferty's approximation.
-double SurelyTooLarge(int dof) {
-  const double spread = 2.0 / (9.0 * dof);
-  const double root = 1.0 - spread + 3.0902 * std::sqrt(spread);
-  return root * root * root;
-}
-
 Diagnostic Warning(const MeasurementSet& set,
                    std::string code,
                    std::string message,
@@ -79,7 +74,7 @@ Diagnostic Warning(const MeasurementSet& set,
 void WarnOfContradiction(const MeasurementSet& set, CalibrationReport* report) {
   if (report->dof <= 0 || report->sigma_assumed) return;
   const double ratio = report->chi_squared / report->dof;
-  if (ratio < SurelyTooLarge(report->dof)) return;
+  if (report->chi_squared < ChiSquaredUpper(1e-3, report->dof)) return;
   report->diagnostics.push_back(
       Warning(set,
               codes::kContradiction.code,
@@ -94,13 +89,14 @@ void WarnOfContradiction(const MeasurementSet& set, CalibrationReport* report) {
 void WarnOfOutliers(const MeasurementSet& set, CalibrationReport* report) {
   std::vector<double> sigmas;
   for (const RowResidual& row : report->rows) {
-    if (!row.held_out) sigmas.push_back(row.after_sigmas);
+    if (!row.held_out && !row.rejected) sigmas.push_back(row.after_sigmas);
   }
   const double scale = std::max(RobustSigma(sigmas), 1e-9);
   if (report->dof < 3) return;
   for (std::size_t i = 0; i < report->rows.size(); ++i) {
     const RowResidual& row = report->rows[i];
-    if (row.held_out || row.after_sigmas < kSurelyWrongSigmas * scale) continue;
+    if (row.held_out || row.rejected) continue;
+    if (row.after_sigmas < kSurelyWrongSigmas * scale) continue;
     if (row.after_sigmas < 1e-3) continue;  // rounding of noise-free data
     report->diagnostics.push_back(AboutRow(set,
                                            set.measurements[i],
@@ -112,6 +108,24 @@ void WarnOfOutliers(const MeasurementSet& set, CalibrationReport* report) {
                                                        row.after_sigmas / scale,
                                                        row.after_mm),
                                            "measure it again or leave it out"));
+  }
+}
+
+void TellRejected(const MeasurementSet& set, CalibrationReport* report) {
+  for (std::size_t i = 0; i < report->rows.size(); ++i) {
+    const RowResidual& row = report->rows[i];
+    if (!row.rejected) continue;
+    report->diagnostics.push_back(
+        AboutRow(set,
+                 set.measurements[i],
+                 Severity::kWarning,
+                 codes::kRejected.code,
+                 fmt::format("row {} was left out of the fit: it is off by {:.3g} times its "
+                             "deviation ({:.4g} mm)",
+                             row.row,
+                             row.after_sigmas,
+                             row.after_mm),
+                 "measure it again, or keep all rows with --outliers keep"));
   }
 }
 
@@ -175,14 +189,16 @@ Diagnostic AboutRow(const MeasurementSet& set,
 }
 
 void JudgeRows(const MeasurementSet& set,
-               std::vector<JudgedRow>& rows,
+               const std::vector<JudgedRow>& rows,
                const Eigen::VectorXd& theta,
+               PoseRows* poses,
                CalibrationReport* report) {
   std::map<std::pair<bool, std::string>, Sums> sums;
-  for (JudgedRow& row : rows) {
-    const Measurement& measurement = row.model.measurement();
-    const RowModel::Prediction prediction = row.model.Predict(theta, false);
-    if (!prediction.ok()) {
+  const std::vector<PoseRows::Judged> judged = poses->Judge(theta);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Measurement& measurement = set.measurements[k];
+    const JudgedRow& row = rows[k];
+    if (!judged[k].ok) {
       report->status = IdentifyStatus::kForwardFailed;
       report->diagnostics.push_back(AboutRow(
           set,
@@ -190,31 +206,51 @@ void JudgeRows(const MeasurementSet& set,
           Severity::kError,
           codes::kNoPose.code,
           fmt::format("row {}: with the identified geometry the machine has no pose at these "
-                      "readings ({})",
-                      measurement.row,
-                      Name(prediction.status())),
+                      "readings",
+                      measurement.row),
           "check the readings of the row"));
       continue;
     }
-    const RowErrors after = row.model.Errors(prediction);
+    const RowErrors& after = judged[k].errors;
     RowResidual residual{.row = measurement.row,
                          .line = measurement.line,
                          .kind = measurement.kind,
                          .held_out = row.held_out,
+                         .rejected = row.rejected,
                          .before_mm = row.before.LengthNorm(),
                          .after_mm = after.LengthNorm()};
-    residual.after_sigmas = row.model.Whitened(prediction).value.norm() /
-                            std::sqrt(static_cast<double>(row.model.size()));
-    sums[{row.held_out, std::string(LengthQuantity(measurement.kind))}].Add(residual.before_mm,
-                                                                            residual.after_mm);
+    residual.after_sigmas =
+        std::sqrt(judged[k].whitened_square / static_cast<double>(measurement.Numbers()));
     if (measurement.kind == MeasurementKind::kPose) {
       residual.before_rad = row.before.AngleNorm();
       residual.after_rad = after.AngleNorm();
-      sums[{row.held_out, "orientation"}].Add(residual.before_rad, residual.after_rad);
     }
     report->rows.push_back(residual);
+    if (row.rejected) continue;
+    sums[{row.held_out, std::string(LengthQuantity(measurement.kind))}].Add(residual.before_mm,
+                                                                            residual.after_mm);
+    if (measurement.kind == MeasurementKind::kPose) {
+      sums[{row.held_out, "orientation"}].Add(residual.before_rad, residual.after_rad);
+    }
   }
   AddStatistics(sums, report);
+}
+
+void JudgeTool(const std::vector<std::size_t>& fitted, PoseRows* poses, CalibrationReport* report) {
+  double sum = 0.0;
+  int count = 0;
+  const std::size_t stride = fitted.size() / kMostToolRows + 1;
+  const auto n = static_cast<Eigen::Index>(report->free.size());
+  Eigen::Matrix<double, 6, Eigen::Dynamic> twists(6, n);
+  for (std::size_t i = 0; i < fitted.size(); i += stride) {
+    if (!poses->ToolByParameters(report->theta_after, fitted[i], &twists)) continue;
+    const Eigen::MatrixXd J = twists.topRows<3>();
+    const double square = (J * report->covariance).cwiseProduct(J).sum();
+    sum += square;
+    report->tool_sigma_max_mm = std::max(report->tool_sigma_max_mm, std::sqrt(square));
+    ++count;
+  }
+  if (count > 0) report->tool_sigma_rms_mm = std::sqrt(sum / count);
 }
 
 void JudgeParameters(const kinematics::Machine& machine,
@@ -222,7 +258,6 @@ void JudgeParameters(const kinematics::Machine& machine,
                      const RankAnalysis& analysis,
                      const std::vector<bool>& at_bound,
                      const IdentifyOptions& options,
-                     const std::vector<JudgedRow>& rows,
                      CalibrationReport* report) {
   const double variance = report->sigma_assumed ? report->sigma0 * report->sigma0 : 1.0;
   report->covariance = variance * (selection.scale.asDiagonal() * analysis.covariance *
@@ -255,23 +290,6 @@ void JudgeParameters(const kinematics::Machine& machine,
       }
     }
   }
-  double sum = 0.0;
-  int count = 0;
-  for (const JudgedRow& row : rows) {
-    if (row.held_out) continue;
-    const RowModel::Prediction prediction = row.model.Predict(report->theta_after, true);
-    if (!prediction.ok()) continue;
-    Eigen::MatrixXd J(3, selection.size());
-    for (Eigen::Index i = 0; i < selection.size(); ++i) {
-      J.col(i) =
-          prediction.first.by_parameters.col(selection.free[static_cast<std::size_t>(i)]).head<3>();
-    }
-    const double square = (J * report->covariance * J.transpose()).trace();
-    sum += square;
-    report->tool_sigma_max_mm = std::max(report->tool_sigma_max_mm, std::sqrt(square));
-    ++count;
-  }
-  if (count > 0) report->tool_sigma_rms_mm = std::sqrt(sum / count);
 }
 
 void WarnOfDoubts(const MeasurementSet& set,
@@ -292,6 +310,7 @@ void WarnOfDoubts(const MeasurementSet& set,
                 "measure more"));
   }
   WarnOfContradiction(set, report);
+  TellRejected(set, report);
   WarnOfOutliers(set, report);
   WarnOfParameters(set, report);
   WarnOfHeldOut(set, report);

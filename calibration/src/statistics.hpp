@@ -3,6 +3,7 @@
 #define KOMPONO_CALIBRATION_SRC_STATISTICS_HPP_
 
 #include "identifiability.hpp"
+#include "pose_rows.hpp"
 #include "residuals.hpp"
 #include "selection.hpp"
 
@@ -12,18 +13,19 @@
 
 namespace kompono::calibration {
 
-/// A row with what was predicted of it at first and at last.
+/// What is known of a row besides its measurement.
 struct JudgedRow {
-  RowModel model;
   bool held_out = false;
+  bool rejected = false;
   RowErrors before;
 };
 
 /// Errors of every row at `theta`, into the report's rows and tables. A row without a pose becomes
 /// a complaint and the status kForwardFailed.
 void JudgeRows(const MeasurementSet& set,
-               std::vector<JudgedRow>& rows,
+               const std::vector<JudgedRow>& rows,
                const Eigen::VectorXd& theta,
+               PoseRows* poses,
                CalibrationReport* report);
 
 /// Parameters with deviations, bounds and correlations; the tool's predicted deviation.
@@ -32,8 +34,10 @@ void JudgeParameters(const kinematics::Machine& machine,
                      const RankAnalysis& analysis,
                      const std::vector<bool>& at_bound,
                      const IdentifyOptions& options,
-                     const std::vector<JudgedRow>& rows,
                      CalibrationReport* report);
+
+/// The tool's predicted deviation over some of the rows in `fitted`.
+void JudgeTool(const std::vector<std::size_t>& fitted, PoseRows* poses, CalibrationReport* report);
 
 /// Warnings about a result that can be used but should be looked at.
 void WarnOfDoubts(const MeasurementSet& set, const Selection& selection, CalibrationReport* report);

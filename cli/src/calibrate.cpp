@@ -38,6 +38,9 @@ struct Options {
   double sigma_mm = IdentifyOptions{}.default_sigma_mm;
   double sigma_deg = IdentifyOptions{}.default_sigma_rad * kDegPerRad;
   int max_iterations = IdentifyOptions{}.max_iterations;
+  std::string outliers = "auto";
+  double drive_sigma_mm = 0.0;
+  double drive_sigma_deg = 0.0;
   bool residuals = false;
   bool force = false;
 };
@@ -60,6 +63,10 @@ IdentifyOptions IdentifyOptionsOf(const Machine& machine,
   out.held_out_fraction = options.held_out;
   out.seed = options.seed;
   out.max_iterations = options.max_iterations;
+  out.drive_sigma_mm = options.drive_sigma_mm;
+  out.drive_sigma_rad = options.drive_sigma_deg / kDegPerRad;
+  if (options.outliers == "reject") out.outliers = calibration::Outliers::kReject;
+  if (options.outliers == "keep") out.outliers = calibration::Outliers::kKeep;
   return out;
 }
 
@@ -216,7 +223,7 @@ ExitCode Run(Session& session, const Options& options) {
   return Identify(session, *machine, *files, identify, options);
 }
 
-void AddFitOptions(CLI::App& command, Options& options) {
+void AddFitOptions(CLI::App& command, Session& session, Options& options) {
   const auto patterns =
       [&command](
           const char* name, std::vector<std::string>& value, const char* form, const char* text) {
@@ -243,6 +250,20 @@ void AddFitOptions(CLI::App& command, Options& options) {
           "--sigma-deg", options.sigma_deg, "Deviation of angles whose row gives none (0.00057)")
       ->type_name("DEG")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--drive-sigma-mm", options.drive_sigma_mm, "Deviation of linear readings (0)")
+      ->type_name("MM")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--drive-sigma-deg", options.drive_sigma_deg, "Deviation of rotary readings (0)")
+      ->type_name("DEG")
+      ->check(CLI::NonNegativeNumber);
+  session.Choices(
+      command
+          .add_option(
+              "--outliers", options.outliers, "Rows that stand out: reject, keep or auto (auto)")
+          ->type_name("WHAT"),
+      {"auto", "reject", "keep"});
   command.add_option("--max-iterations", options.max_iterations, "Then it has not converged (100)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
@@ -267,7 +288,7 @@ void AddCalibrate(CLI::App& root, Session& session) {
                    ->required(),
                ValueHint::Kind::kFile);
   file("-o,--out", options->out, "Calibrated layout to write");
-  AddFitOptions(*command, *options);
+  AddFitOptions(*command, session, *options);
   file("--published", options->published, "A delta run's description: compare with Klipper's fit");
   file("--report", options->report, "The whole report as JSON, for kompono catalog add --report");
   command->add_flag("--residuals", options->residuals, "A line for every row");

@@ -4,6 +4,8 @@
 #include "machines.hpp"
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <cmath>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -93,6 +95,68 @@ TEST(Hexapod, ErrorsOfTheParametersMatchTheirDeviations) {
   const double chi_squared = error.dot(report.covariance.ldlt().solve(error));
   EXPECT_GT(chi_squared, 42.0 - 3.0 * 9.2);
   EXPECT_LT(chi_squared, 42.0 + 3.0 * 9.2);
+}
+
+/// Three rows off by 0.2 mm in a direction of their own.
+class OutlierPatterns : public ::testing::TestWithParam<std::array<int, 3>> {};
+
+TEST_P(OutlierPatterns, OfThreeRowsAreRejectedAndNoOthers) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  MeasurementSet set =
+      TrainAndValid(machine, "hexapod_train60.csv", "hexapod_valid100_noisefree.csv");
+  std::vector<int> spoilt;
+  for (const int row : GetParam()) {
+    const Eigen::Vector3d direction =
+        Eigen::Vector3d(std::sin(row), std::cos(2.0 * row), std::sin(3.0 * row + 1.0)).normalized();
+    for (int i = 0; i < 3; ++i) {
+      *set.measurements[static_cast<std::size_t>(row - 1)]
+           .position_mm[static_cast<std::size_t>(i)] += 0.2 * direction[i];
+    }
+    spoilt.push_back(row);
+  }
+  const CalibrationReport report = Identify(machine, set);
+  ASSERT_EQ(report.status, IdentifyStatus::kConverged) << RenderText(report);
+  EXPECT_EQ(report.rejected, spoilt);
+  EXPECT_EQ(report.rows_fitted, 57);
+  EXPECT_LT(RmsAfter(report, "position", true), 3.0e-3);
+  IdentifyOptions keep;
+  keep.outliers = Outliers::kKeep;
+  EXPECT_GT(RmsAfter(Identify(machine, set, keep), "position", true), 5.0e-3)
+      << "without rejection the rows do harm";
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows,
+                         OutlierPatterns,
+                         ::testing::Values(std::array{1, 2, 3},
+                                           std::array{7, 31, 58},
+                                           std::array{20, 21, 60},
+                                           std::array{5, 33, 47}),
+                         [](const auto& rows) {
+                           return std::to_string(rows.param[0]) + "_" +
+                                  std::to_string(rows.param[1]) + "_" +
+                                  std::to_string(rows.param[2]);
+                         });
+
+TEST(Hexapod, IsIdentifiedWithCovarianceInSevenMilliseconds) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  MeasurementSet set = Good(ReadMeasurements(kData / "hexapod_train60.csv", machine));
+  for (Measurement& m : set.measurements) {
+    m.sigma_mm = kNoiseMm;
+    m.sigma_rad = kNoiseRad;
+  }
+  double best_ms = 1e9;
+  // The best of many, so that other work on the machine does not count.
+  for (int i = 0; i < 40 && best_ms > 6.0; ++i) {
+    const CalibrationReport report = Identify(machine, set);
+    ASSERT_EQ(report.covariance.rows(), 42);
+    best_ms = std::min(best_ms, report.total_ms);
+  }
+  RecordProperty("total_ms", std::to_string(best_ms));
+#ifdef NDEBUG
+  EXPECT_LT(best_ms, 7.0);
+#else
+  EXPECT_LT(best_ms, 70.0);
+#endif
 }
 
 TEST(Hexapod, UnknownBaseAndTargetFramesAreFoundTooAndTheirGaugeIsNamed) {

@@ -330,13 +330,21 @@ TEST(Identify, SaysThatDataContradictAndWhichRowStandsOut) {
   PrinterRegion(&options);
   MeasurementSet set = Measured(Delta(), Delta().nominal(), options);
   *set.measurements[16].position_mm[1] += 0.5;
-  const CalibrationReport report = Identify(Delta(), set);
+  IdentifyOptions keep;
+  keep.outliers = Outliers::kKeep;
+  const CalibrationReport report = Identify(Delta(), set, keep);
   ASSERT_TRUE(report.ok());
   EXPECT_GT(report.sigma0, 3.0);
   EXPECT_THAT(report.diagnostics, Contains(Field(&Diagnostic::code, "W0454")));
   EXPECT_THAT(report.diagnostics,
               Contains(AllOf(Field(&Diagnostic::code, "W0455"),
                              Field(&Diagnostic::message, HasSubstr("row 17 is off by")))));
+  const CalibrationReport robust = Identify(Delta(), set);
+  EXPECT_EQ(robust.rejected, std::vector<int>{17}) << RenderText(robust);
+  EXPECT_NEAR(robust.sigma0, 1.0, 0.25);
+  EXPECT_THAT(robust.diagnostics,
+              Contains(AllOf(Field(&Diagnostic::code, "W0460"),
+                             Field(&Diagnostic::message, HasSubstr("row 17 was left out")))));
   const CalibrationReport clean = Identify(Delta(), Measured(Delta(), Delta().nominal(), options));
   EXPECT_THAT(clean.diagnostics, ::testing::IsEmpty()) << RenderAll(clean.diagnostics, {});
 }

@@ -54,6 +54,8 @@ inline constexpr CodeTitle kOutlier{"W0455", "row that stands out"};
 inline constexpr CodeTitle kFarFromNominal{"W0456", "parameter far from its nominal value"};
 inline constexpr CodeTitle kAtBound{"W0457", "parameter at its bound"};
 inline constexpr CodeTitle kNotConverged{"E0458", "identification that did not converge"};
+inline constexpr CodeTitle kRejected{"W0460", "row left out of the fit"};
+inline constexpr CodeTitle kTooManyOutliers{"W0461", "too many rows that stand out"};
 inline constexpr CodeTitle kHeldOutWorse{"W0459", "held-out rows that became worse"};
 }  // namespace codes
 

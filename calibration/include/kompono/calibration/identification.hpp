@@ -32,6 +32,13 @@
 /// tolerances, so that predictions are not disturbed and parameters do not wander.
 namespace kompono::calibration {
 
+/// What becomes of rows that stand out of the others.
+enum class Outliers {
+  kAutomatic,  ///< rejected, unless the rows carry only relative weights
+  kReject,     ///< two-stage robust fit on whole rows; what stands out is left out and listed
+  kKeep,       ///< plain least squares over all rows
+};
+
 struct IdentifyOptions {
   /// What may change, as patterns (layout::MatchesPattern): "struts.base[*]", "*.zero",
   /// "open_base". Without: the layout's [calibration] free, or all parameters marked identifiable,
@@ -47,7 +54,10 @@ struct IdentifyOptions {
   std::uint64_t seed = 1;
   int max_iterations = 100;
   double rank_threshold = 1e-9;  ///< relative to the largest singular value, columns of unit length
-  double correlation_threshold = 0.95;   ///< pairs above it are reported
+  double correlation_threshold = 0.95;  ///< pairs above it are reported
+  Outliers outliers = Outliers::kAutomatic;
+  /// Deviations of the drive readings themselves. 0: the scales are exact beside the instrument.
+  double drive_sigma_mm = 0.0, drive_sigma_rad = 0.0;
   std::optional<Eigen::VectorXd> start;  ///< θ to start from; the layout's if not given
 };
 
@@ -101,6 +111,7 @@ struct RowResidual {
   int row = 0, line = 0;
   MeasurementKind kind = MeasurementKind::kPosition;
   bool held_out = false;
+  bool rejected = false;  ///< stood out and was left out of the fit
   double before_mm = 0.0, after_mm = 0.0;
   double before_rad = 0.0, after_rad = 0.0;  ///< poses only
   double after_sigmas = 0.0;  ///< RMS of the row's residuals after, in their standard deviations
@@ -136,6 +147,7 @@ struct CalibrationReport {
   std::vector<NullDirection> unidentifiable;
   std::vector<ErrorStatistics> statistics;
   std::vector<RowResidual> rows;
+  std::vector<int> rejected;  ///< numbers of the rows that stood out and were left out of the fit
 
   /// The parameters may be used.
   [[nodiscard]] bool ok() const {

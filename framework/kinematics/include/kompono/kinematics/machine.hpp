@@ -150,6 +150,8 @@ struct MeasuredPose {
       by_parameters;  ///< total, closures kept (implicit function theorem)
 };
 
+class Linearisation;
+
 class Machine {
  public:
   /// Creates the modules of the layout. Complaints have the codes of the registry (E02xx) or E07xx.
@@ -260,6 +262,7 @@ class Machine {
   struct Impl;
 
  private:
+  friend class Linearisation;
   explicit Machine(std::shared_ptr<const Impl> impl);
   std::shared_ptr<const Impl> impl_;
 };
