@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "kompono/calibration/codes.hpp"
+#include "kompono/calibration/measurements.hpp"
 #include "kompono/diagnostics/suggestion.hpp"
 
 namespace kompono::calibration {
@@ -87,6 +88,10 @@ class HeaderReader {
       if (!first_ignored_) first_ignored_ = cell;
       return {};
     }
+    for (const FixtureKind kind :
+         {FixtureKind::kTarget, FixtureKind::kCentre, FixtureKind::kPlane, FixtureKind::kSheet}) {
+      if (name == Name(kind)) return {Role::kFixtureName, static_cast<int>(kind)};
+    }
     const bool second = name.starts_with("second.");
     const SplitName split = SplitUnit(second ? name.substr(7) : name);
     if (!second) {
@@ -106,8 +111,15 @@ class HeaderReader {
     constexpr std::array<std::string_view, 3> kPosition{"x", "y", "z"};
     constexpr std::array<std::string_view, 3> kRotation{"rx", "ry", "rz"};
     constexpr std::array<std::string_view, 3> kAngles{"a", "b", "c"};
+    constexpr std::array<std::string_view, 3> kTarget{"target_x", "target_y", "target_z"};
+    constexpr std::array<std::string_view, 3> kCentre{"centre_x", "centre_y", "centre_z"};
+    constexpr std::array<std::string_view, 3> kNormal{"plane_nx", "plane_ny", "plane_nz"};
+    if (split.base == "plane_offset") return Length(cell, split, {Role::kPlaneOffset});
     for (int i = 0; i < 3; ++i) {
       const auto at = static_cast<std::size_t>(i);
+      if (split.base == kTarget[at]) return Length(cell, split, {Role::kTarget, i});
+      if (split.base == kCentre[at]) return Length(cell, split, {Role::kCentre, i});
+      if (cell.text == kNormal[at]) return Column{Role::kPlaneNormal, i};
       if (split.base == kPosition[at]) return Length(cell, split, {Role::kPosition, i});
       if (split.base == kRotation[at]) return Angle(cell, split, {Role::kRotationVector, i}, "rad");
       if (split.base == kAngles[at]) return Angle(cell, split, {Role::kAngle, i}, "deg");
@@ -213,20 +225,13 @@ class HeaderReader {
   }
 
   [[nodiscard]] std::vector<std::string> KnownColumns() const {
-    std::vector<std::string> known{"kind",
-                                   "value_mm",
-                                   "x_mm",
-                                   "y_mm",
-                                   "z_mm",
-                                   "rx_rad",
-                                   "ry_rad",
-                                   "rz_rad",
-                                   "a_deg",
-                                   "b_deg",
-                                   "c_deg",
-                                   "sigma_mm",
-                                   "sigma_rad",
-                                   "held_out"};
+    std::vector<std::string> known{
+        "kind",        "value_mm",        "x_mm",        "y_mm",     "z_mm",
+        "rx_rad",      "ry_rad",          "rz_rad",      "a_deg",    "b_deg",
+        "c_deg",       "sigma_mm",        "sigma_rad",   "held_out", "target",
+        "target_x_mm", "target_y_mm",     "target_z_mm", "centre",   "centre_x_mm",
+        "centre_y_mm", "centre_z_mm",     "plane",       "plane_nx", "plane_ny",
+        "plane_nz",    "plane_offset_mm", "sheet"};
     for (const auto& [name, drive] : names_) {
       if (name.starts_with("drive.")) continue;
       const std::string unit = drives_[static_cast<std::size_t>(drive)].rotary ? "_deg" : "_mm";

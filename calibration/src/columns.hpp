@@ -25,6 +25,11 @@ enum class Role {
   kSigmaAngle,
   kReading,        ///< index of the drive
   kSecondReading,  ///< index of the drive
+  kFixtureName,    ///< index: FixtureKind
+  kTarget,         ///< index 0..2
+  kCentre,         ///< index 0..2
+  kPlaneNormal,    ///< index 0..2
+  kPlaneOffset,
 };
 
 struct Column {

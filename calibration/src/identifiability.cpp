@@ -130,11 +130,11 @@ std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
   Eigen::MatrixXd basis = analysis.null_unit;
   std::vector<bool> preferred;
   for (const int index : selection.free) {
-    preferred.push_back(IsSingleNumber(machine.parameters()[static_cast<std::size_t>(index)].name));
+    preferred.push_back(IsSingleNumber(selection.parameters[static_cast<std::size_t>(index)].name));
   }
   if (basis.cols() == 0) return directions;
   ReduceColumns(preferred, &basis);
-  const NullWords words(machine, rows, theta);
+  const NullWords words(machine, selection.parameters, rows, theta);
   for (Eigen::Index k = 0; k < basis.cols(); ++k) {
     basis.col(k) /= basis.col(k).cwiseAbs().maxCoeff();
     Eigen::VectorXd change = Eigen::VectorXd::Zero(theta.size());

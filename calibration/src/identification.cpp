@@ -90,11 +90,14 @@ class Identification {
     report_.free = selection_.free;
     report_.theta_before = options_.start.value_or(machine_.nominal());
     report_.theta_after = report_.theta_before;
-    if (report_.theta_before.size() != selection_.nominal.size()) {
+    theta_before_ = selection_.nominal;
+    if (report_.theta_before.size() == machine_.nominal().size()) {
+      theta_before_.head(report_.theta_before.size()) = report_.theta_before;
+    } else {
       return Refuse(codes::kBadStart.code,
                     fmt::format("the start has {} numbers, the machine {}",
                                 report_.theta_before.size(),
-                                selection_.nominal.size()));
+                                machine_.parameters().size()));
     }
     const std::vector<bool> held_out = HeldOut(set_, options_);
     rows_.resize(set_.measurements.size());
@@ -104,7 +107,7 @@ class Identification {
       if (held_out[i]) continue;
       fitted_.push_back(i);
       report_.numbers += m.Numbers();
-      const bool turned = m.kind == MeasurementKind::kPose;
+      const bool turned = HasRotation(m.kind);
       report_.sigma_assumed |= !m.sigma_mm || (turned && !m.sigma_rad);
     }
     report_.sigma_assumed |= set_.relative_weights;
@@ -129,8 +132,8 @@ class Identification {
 
   /// Every row needs a pose before the solver starts; those that have none are named, all of them.
   bool FindStarts() {
-    const std::vector<kinematics::SolveStatus> status = poses_->Start(report_.theta_before);
-    const std::vector<PoseRows::Judged> before = poses_->Judge(report_.theta_before);
+    const std::vector<kinematics::SolveStatus> status = poses_->Start(theta_before_);
+    const std::vector<PoseRows::Judged> before = poses_->Judge(theta_before_);
     bool all = true;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (status[k] == kinematics::SolveStatus::kConverged && before[k].ok) {
@@ -164,15 +167,17 @@ class Identification {
                          .weights = {},
                          .gauge = Eigen::MatrixXd(selection_.size(), 0),
                          .max_iterations = options_.max_iterations};
-    Eigen::VectorXd u = selection_.Unknowns(report_.theta_before);
+    Eigen::VectorXd u = selection_.Unknowns(theta_before_);
+    bool near = false;
     if (problem.chosen.size() < fitted_.size()) {
       // Some of the rows lead almost to the end; the others then need one pass or two.
-      const RobustFit coarse = FitOf(problem, u);
+      const RobustFit coarse = FitOf(problem, u, false);
+      near = coarse.fit.converged && !coarse.too_many;
       if (coarse.fit.converged) u = coarse.fit.u;
       Keep(coarse.fit);
     }
     problem.chosen = fitted_;
-    RobustFit robust = FitOf(problem, u);
+    RobustFit robust = FitOf(problem, u, near);
     if (robust.too_many) WarnOfTooMany();
     for (const std::size_t k : robust.rejected) rows_[k].rejected = true;
     std::erase_if(fitted_, [this](std::size_t k) { return rows_[k].rejected; });
@@ -195,12 +200,13 @@ class Identification {
       Keep(fit);
       analysis = Analyze(fit);
     }
-    report_.theta_after = selection_.Theta(fit.u.data());
+    theta_ = selection_.Theta(fit.u.data());
+    report_.theta_after = theta_.head(report_.theta_before.size());
     Judge(fit, analysis);
   }
 
-  RobustFit FitOf(const LeastSquares& problem, const Eigen::VectorXd& u) {
-    if (Rejects()) return SolveRobustly(problem, u, !report_.sigma_assumed);
+  RobustFit FitOf(const LeastSquares& problem, const Eigen::VectorXd& u, bool near) {
+    if (Rejects()) return SolveRobustly(problem, u, !report_.sigma_assumed, near);
     return {.fit = SolveLeastSquares(problem, u), .rejected = {}};
   }
 
@@ -275,10 +281,10 @@ class Identification {
     report_.status =
         analysis.gauge.cols() > 0 ? IdentifyStatus::kRankDeficient : IdentifyStatus::kConverged;
     report_.unidentifiable =
-        DescribeNullSpace(analysis, machine_, selection_, Models(analysis), report_.theta_after);
-    JudgeParameters(machine_, selection_, analysis, at_bound_, options_, &report_);
-    JudgeTool(fitted_, poses_.get(), &report_);
-    JudgeRows(set_, rows_, report_.theta_after, poses_.get(), &report_);
+        DescribeNullSpace(analysis, machine_, selection_, Models(analysis), theta_);
+    JudgeParameters(selection_, theta_before_, theta_, analysis, at_bound_, options_, &report_);
+    JudgeTool(fitted_, theta_, poses_.get(), &report_);
+    JudgeRows(set_, rows_, theta_, poses_.get(), &report_);
     if (report_.status == IdentifyStatus::kForwardFailed) return;
     if (!fit.converged) {
       report_.status = IdentifyStatus::kIterationLimit;
@@ -331,6 +337,7 @@ class Identification {
   const MeasurementSet& set_;
   const IdentifyOptions& options_;
   Selection selection_;
+  Eigen::VectorXd theta_before_, theta_;  ///< fixtures included
   std::vector<JudgedRow> rows_;
   std::vector<std::size_t> fitted_;
   std::vector<RowModel> models_;
@@ -370,12 +377,15 @@ double WeightedSquares(const kinematics::Machine& machine,
                        const Eigen::VectorXd& theta,
                        const IdentifyOptions& options) {
   double sum = 0.0;
+  const Eigen::VectorXd all = AllNominal(machine, set);
+  const FixtureValues fixtures{.fixtures = &set.fixtures,
+                               .value = all.data() + machine.parameters().size()};
   for (const Measurement& measurement : set.measurements) {
     if (measurement.held_out) continue;
     RowModel row(machine, measurement, options.default_sigma_mm, options.default_sigma_rad);
     const RowModel::Prediction prediction = row.FindStart(theta, nullptr);
     if (!prediction.ok()) return std::numeric_limits<double>::quiet_NaN();
-    sum += row.Whitened(prediction).value.squaredNorm();
+    sum += row.Whitened(prediction, fixtures).value.squaredNorm();
   }
   return sum;
 }

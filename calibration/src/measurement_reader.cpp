@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "columns.hpp"
+#include "fixture_book.hpp"
 #include "klipper_import.hpp"
 #include "numbers.hpp"
 #include "residuals.hpp"
@@ -26,7 +27,8 @@ namespace kompono::calibration {
 namespace {
 
 const std::vector<std::string>& KindNames() {
-  static const std::vector<std::string> names{"height", "distance", "position", "pose"};
+  static const std::vector<std::string> names{
+      "height", "distance", "position", "pose", "ball_bar", "plane", "hole", "relative"};
   return names;
 }
 
@@ -34,20 +36,15 @@ std::optional<MeasurementKind> KindOf(std::string_view name) {
   for (const MeasurementKind kind : {MeasurementKind::kHeight,
                                      MeasurementKind::kDistance,
                                      MeasurementKind::kPosition,
-                                     MeasurementKind::kPose}) {
+                                     MeasurementKind::kPose,
+                                     MeasurementKind::kBallBar,
+                                     MeasurementKind::kPlane,
+                                     MeasurementKind::kHole,
+                                     MeasurementKind::kRelative}) {
     if (Name(kind) == name) return kind;
   }
   return std::nullopt;
 }
-
-/// The numbers of one row before they become a measurement.
-struct RowCells {
-  const TableRow* row;
-  std::vector<std::optional<double>> value;  ///< mm or rad; none where the cell is empty or wrong
-  [[nodiscard]] bool Empty(int column) const {
-    return column < 0 || row->cells[static_cast<std::size_t>(column)].text.empty();
-  }
-};
 
 class RowReader {
  public:
@@ -59,7 +56,10 @@ class RowReader {
         table_(table),
         drives_(static_cast<int>(machine.drives().size())),
         order_(machine.layout().rotation_order),
-        complaints_(complaints) {}
+        complaints_(complaints),
+        book_(columns, complaints) {}
+
+  [[nodiscard]] std::vector<Fixture> TakeFixtures() { return book_.Take(); }
 
   std::optional<Measurement> Read(const TableRow& row) {
     if (row.cells.size() != columns_.columns.size()) {
@@ -82,6 +82,7 @@ class RowReader {
     if (kind) {
       measurement.kind = *kind;
       ReadMeasured(cells, measurement);
+      good_ = book_.Read(cells, &measurement) && good_;
     }
     ReadSigmas(cells, measurement);
     ReadHeldOut(cells, measurement);
@@ -95,7 +96,7 @@ class RowReader {
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const Column& column = columns_.columns[i];
       const bool number = column.role != Role::kIgnored && column.role != Role::kKind &&
-                          column.role != Role::kHeldOut;
+                          column.role != Role::kHeldOut && column.role != Role::kFixtureName;
       if (!number || row.cells[i].text.empty()) continue;
       cells.value[i] = NumberOf(row.cells[i], complaints_);
       if (cells.value[i]) {
@@ -131,9 +132,15 @@ class RowReader {
     const bool position = Filled(cells, Role::kPosition);
     const bool turned = Filled(cells, Role::kRotationVector) || Filled(cells, Role::kAngle);
     if (value && !position && !turned) {
+      if (HasFixture(cells, FixtureKind::kCentre, Role::kCentre)) return MeasurementKind::kBallBar;
+      if (HasFixture(cells, FixtureKind::kPlane, Role::kPlaneNormal)) {
+        return MeasurementKind::kPlane;
+      }
       return second ? MeasurementKind::kDistance : MeasurementKind::kHeight;
     }
+    if (position && !value && second && turned) return MeasurementKind::kRelative;
     if (position && !value && !second) {
+      if (HasFixture(cells, FixtureKind::kSheet, Role::kIgnored)) return MeasurementKind::kHole;
       return turned ? MeasurementKind::kPose : MeasurementKind::kPosition;
     }
     Refuse(cells,
@@ -141,9 +148,15 @@ class RowReader {
            value || position ? "the row may be of more than one kind"
                              : "the row does not tell what was measured",
            value || position
-               ? "name it in a column 'kind': height, distance, position or pose"
+               ? "name it in a column 'kind': height, distance, position, pose, ball_bar, plane, "
+                 "hole or relative"
                : "fill value_mm (height, distance) or x_mm, y_mm, z_mm (position, pose)");
     return std::nullopt;
+  }
+
+  [[nodiscard]] bool HasFixture(const RowCells& cells, FixtureKind kind, Role numbers) const {
+    return !cells.Empty(columns_.Find(Role::kFixtureName, static_cast<int>(kind))) ||
+           (numbers != Role::kIgnored && Filled(cells, numbers));
   }
 
   [[nodiscard]] bool Filled(const RowCells& cells, Role role) const {
@@ -191,18 +204,20 @@ class RowReader {
       if (columns_.Find(Role::kReading, i) < 0) return;  // the header's complaint says it all
       measurement.readings[i] = Needed(cells, Role::kReading, i, "measurement");
     }
-    if (kind != MeasurementKind::kDistance) return;
+    if (kind != MeasurementKind::kDistance && kind != MeasurementKind::kRelative) return;
     if (!columns_.Has(Role::kSecondReading)) {
       Refuse(cells,
              codes::kMissingValue.code,
-             "a distance needs the readings at its second point",
+             kind == MeasurementKind::kRelative
+                 ? "a relative pose needs the readings at its second pose"
+                 : "a distance needs the readings at its second point",
              "add columns second.<drive>_mm");
       return;
     }
     measurement.second_readings.resize(drives_);
     for (int i = 0; i < drives_; ++i) {
       if (columns_.Find(Role::kSecondReading, i) < 0) return;
-      measurement.second_readings[i] = Needed(cells, Role::kSecondReading, i, "distance");
+      measurement.second_readings[i] = Needed(cells, Role::kSecondReading, i, Name(*kind));
     }
   }
 
@@ -211,18 +226,25 @@ class RowReader {
     switch (measurement.kind) {
       case MeasurementKind::kHeight:
       case MeasurementKind::kDistance:
+      case MeasurementKind::kBallBar:
+      case MeasurementKind::kPlane: {
         measurement.value_mm = Needed(cells, Role::kValue, 0, what);
-        if (measurement.kind == MeasurementKind::kDistance && measurement.value_mm < 0.0) {
+        const bool is_distance = measurement.kind == MeasurementKind::kDistance ||
+                                 measurement.kind == MeasurementKind::kBallBar;
+        if (is_distance && measurement.value_mm < 0.0) {
           complaints_.Error(codes::kOutOfRange.code,
                             CellOf(cells, Role::kValue),
                             "a distance cannot be negative");
           good_ = false;
         }
         return;
+      }
       case MeasurementKind::kPosition:
+      case MeasurementKind::kHole:
         ReadPosition(cells, measurement);
         return;
       case MeasurementKind::kPose:
+      case MeasurementKind::kRelative:
         for (int i = 0; i < 3; ++i) {
           measurement.position_mm[static_cast<std::size_t>(i)] =
               Needed(cells, Role::kPosition, i, what);
@@ -320,6 +342,7 @@ class RowReader {
   int drives_;
   layout::RotationOrder order_;
   Complaints& complaints_;
+  FixtureBook book_;
   bool good_ = true;
 };
 
@@ -349,6 +372,14 @@ std::string_view Name(MeasurementKind kind) {
       return "distance";
     case MeasurementKind::kPosition:
       return "position";
+    case MeasurementKind::kBallBar:
+      return "ball_bar";
+    case MeasurementKind::kPlane:
+      return "plane";
+    case MeasurementKind::kHole:
+      return "hole";
+    case MeasurementKind::kRelative:
+      return "relative";
     case MeasurementKind::kPose:
       break;
   }
@@ -396,6 +427,8 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
       measurement->row = static_cast<int>(i) + 1;
       set.measurements.push_back(std::move(*measurement));
     }
+    set.fixtures = reader.TakeFixtures();
+    GuessUnknownFixtures(machine, &set);
     WarnOfRepeatedRows(text, table, complaints);
   }
   if (!complaints.HasErrors() && options.check_units) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "kompono/calibration/measurements.hpp"
@@ -14,19 +15,31 @@ namespace {
 struct Needed {
   bool value = false, position = false, rotation = false, second = false;
   bool sigma_mm = false, sigma_rad = false, held_out = false;
+  std::array<bool, 4> fixture{};  ///< by kind
 };
+
+/// Kinds that measure one length.
+bool IsSingle(MeasurementKind kind) {
+  return kind == MeasurementKind::kHeight || kind == MeasurementKind::kDistance ||
+         kind == MeasurementKind::kBallBar || kind == MeasurementKind::kPlane;
+}
 
 Needed ColumnsOf(const MeasurementSet& set) {
   Needed needed;
   for (const Measurement& m : set.measurements) {
-    const bool single = m.kind == MeasurementKind::kHeight || m.kind == MeasurementKind::kDistance;
+    const bool single = IsSingle(m.kind);
     needed.value |= single;
     needed.position |= !single;
-    needed.rotation |= m.kind == MeasurementKind::kPose;
-    needed.second |= m.kind == MeasurementKind::kDistance;
+    needed.rotation |= HasRotation(m.kind);
+    needed.second |= m.second_readings.size() > 0;
     needed.sigma_mm |= m.sigma_mm.has_value();
     needed.sigma_rad |= m.sigma_rad.has_value();
     needed.held_out |= m.held_out;
+    for (const int index : {m.target, m.fixture}) {
+      if (index < 0) continue;
+      needed.fixture[static_cast<std::size_t>(set.fixtures[static_cast<std::size_t>(index)].kind)] =
+          true;
+    }
   }
   return needed;
 }
@@ -52,6 +65,10 @@ class Writer {
     if (needed_.sigma_mm) line += ",sigma_mm";
     if (needed_.sigma_rad) line += ",sigma_rad";
     if (needed_.held_out) line += ",held_out";
+    if (Needs(FixtureKind::kTarget)) line += ",target,target_x_mm,target_y_mm,target_z_mm";
+    if (Needs(FixtureKind::kCentre)) line += ",centre,centre_x_mm,centre_y_mm,centre_z_mm";
+    if (Needs(FixtureKind::kPlane)) line += ",plane,plane_nx,plane_ny,plane_nz,plane_offset_mm";
+    if (Needs(FixtureKind::kSheet)) line += ",sheet";
     for (const kinematics::Drive& drive : drives_) line += "," + ColumnOf(drive);
     for (const kinematics::Drive& drive : drives_) {
       if (needed_.second) line += ",second." + ColumnOf(drive);
@@ -61,7 +78,7 @@ class Writer {
 
   std::string Row(const Measurement& m) {
     std::string line(Name(m.kind));
-    const bool single = m.kind == MeasurementKind::kHeight || m.kind == MeasurementKind::kDistance;
+    const bool single = IsSingle(m.kind);
     if (needed_.value) line += "," + (single ? Exact(m.value_mm) : std::string());
     if (needed_.position) {
       for (const std::optional<double>& component : m.position_mm) line += "," + Exact(component);
@@ -69,21 +86,47 @@ class Writer {
     if (needed_.rotation) {
       const Eigen::Vector3d rotation = RotationVector(m.R_WT);
       for (const double number : rotation) {
-        line += "," + (m.kind == MeasurementKind::kPose ? Exact(number) : std::string());
+        line += "," + (HasRotation(m.kind) ? Exact(number) : std::string());
       }
     }
     if (needed_.sigma_mm) line += "," + Exact(m.sigma_mm);
     if (needed_.sigma_rad) line += "," + Exact(m.sigma_rad);
     if (needed_.held_out) line += m.held_out ? ",1" : ",0";
+    line += FixtureCells(m, FixtureKind::kTarget) + FixtureCells(m, FixtureKind::kCentre) +
+            FixtureCells(m, FixtureKind::kPlane) + FixtureCells(m, FixtureKind::kSheet);
     line += Readings(m.readings);
     if (needed_.second) {
-      line += m.kind == MeasurementKind::kDistance ? Readings(m.second_readings)
-                                                   : std::string(drives_.size(), ',');
+      line += m.second_readings.size() > 0 ? Readings(m.second_readings)
+                                           : std::string(drives_.size(), ',');
     }
     return line + "\n";
   }
 
  private:
+  [[nodiscard]] bool Needs(FixtureKind kind) const {
+    return needed_.fixture[static_cast<std::size_t>(kind)];
+  }
+
+  /// Name and, of a known one, numbers.
+  [[nodiscard]] std::string FixtureCells(const Measurement& m, FixtureKind kind) const {
+    if (!Needs(kind)) return {};
+    const int index = kind == FixtureKind::kTarget ? m.target : m.fixture;
+    const bool plane = kind == FixtureKind::kPlane;
+    const std::size_t cells = kind == FixtureKind::kSheet ? 1 : plane ? 5 : 4;
+    if (index < 0 || set_.fixtures[static_cast<std::size_t>(index)].kind != kind) {
+      return std::string(cells, ',');
+    }
+    const Fixture& fixture = set_.fixtures[static_cast<std::size_t>(index)];
+    std::string text = "," + fixture.name;
+    if (!fixture.known) return text + std::string(cells - 1, ',');
+    if (plane) {
+      for (const double component : fixture.normal) text += "," + Exact(component);
+      return text + "," + Exact(fixture.value[2]);
+    }
+    for (std::size_t i = 0; cells > 1 && i < 3; ++i) text += "," + Exact(fixture.value[i]);
+    return text;
+  }
+
   /// An axis called z would be taken for the measured z.
   static std::string ColumnOf(const kinematics::Drive& drive) {
     const bool may_be_mistaken = drive.name.find('.') == std::string::npos &&

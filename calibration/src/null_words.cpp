@@ -138,7 +138,7 @@ std::string Words(const std::vector<Part>& parts) {
 
 void NullWords::Motion::Add(const MeasuredPose& pose, const Eigen::VectorXd& change) {
   Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();
-  for (Eigen::Index i = 0; i < change.size(); ++i) {
+  for (Eigen::Index i = 0; i < pose.by_parameters.cols(); ++i) {
     if (change[i] == 0.0) continue;
     const Eigen::Matrix<double, 6, 1> part = pose.by_parameters.col(i) * change[i];
     twist += part;
@@ -158,14 +158,15 @@ bool NullWords::Motion::Turns() const {
 }
 
 NullWords::NullWords(const kinematics::Machine& machine,
+                     const std::vector<Parameter>& parameters,
                      const std::vector<RowModel*>& rows,
                      const Eigen::VectorXd& theta)
-    : machine_(machine), rows_(rows), theta_(theta) {
+    : machine_(machine), parameters_(parameters), rows_(rows), theta_(theta) {
   for (const RowModel* row : rows) {
     RowModel::Prediction prediction = row->Predict(theta, true);
     if (!prediction.ok()) continue;
     poses_.push_back(std::move(prediction.first));
-    if (row->measurement().kind == MeasurementKind::kDistance) {
+    if (row->measurement().second_readings.size() > 0) {
       poses_.push_back(std::move(prediction.second));
     }
   }
@@ -192,11 +193,10 @@ NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
   NullDirection direction;
   for (Eigen::Index i = 0; i < change.size(); ++i) {
     if (change[i] == 0.0) continue;
-    direction.parts.emplace_back(machine_.parameters()[static_cast<std::size_t>(i)].name,
-                                 change[i]);
+    direction.parts.emplace_back(parameters_[static_cast<std::size_t>(i)].name, change[i]);
   }
   const Eigen::VectorXd essential = Essential(change);
-  const std::vector<Part> parts = Grouped(machine_.parameters(), essential);
+  const std::vector<Part> parts = Grouped(parameters_, essential);
   direction.words = Words(parts);
   const bool single = (essential.array() != 0.0).count() == 1;
   const std::string measure = Remedy(change);
@@ -213,7 +213,7 @@ NullDirection NullWords::Describe(const Eigen::VectorXd& change) const {
 Eigen::VectorXd NullWords::Essential(const Eigen::VectorXd& change) const {
   Eigen::VectorXd effect = Eigen::VectorXd::Zero(change.size());
   for (const MeasuredPose& pose : poses_) {
-    for (Eigen::Index i = 0; i < change.size(); ++i) {
+    for (Eigen::Index i = 0; i < pose.by_parameters.cols(); ++i) {
       if (change[i] == 0.0) continue;
       const Eigen::Matrix<double, 6, 1> part = pose.by_parameters.col(i) * change[i];
       effect[i] =
@@ -222,6 +222,11 @@ Eigen::VectorXd NullWords::Essential(const Eigen::VectorXd& change) const {
   }
   const double largest = effect.maxCoeff();
   if (largest == 0.0) return change;
+  // Fixtures do not move the tool; theirs count as they are.
+  for (auto i = static_cast<Eigen::Index>(machine_.parameters().size()); i < change.size(); ++i) {
+    const bool angle = parameters_[static_cast<std::size_t>(i)].angle;
+    effect[i] = std::abs(change[i]) * (angle ? kRadianLengthMm : 1.0);
+  }
   return (effect.array() < kSlight * largest).select(0.0, change);
 }
 
@@ -267,7 +272,11 @@ std::vector<MeasuredPose> NullWords::Shifted(const std::vector<bool>& drives) co
         readings[static_cast<Eigen::Index>(k)] += step * kPattern[(k + i) % kPattern.size()];
       }
     }
-    MeasuredPose pose = machine_.Measure(readings, theta_, rows_[i]->start(), true);
+    MeasuredPose pose =
+        machine_.Measure(readings,
+                         theta_.head(static_cast<Eigen::Index>(machine_.parameters().size())),
+                         rows_[i]->start(),
+                         true);
     if (pose.status == kinematics::SolveStatus::kConverged) poses.push_back(std::move(pose));
   }
   return poses;

@@ -19,7 +19,9 @@ namespace kompono::calibration {
 /// tool in components that were not measured, or at other readings?
 class NullWords {
  public:
+  /// `parameters`: of θ, the fixtures' behind the machine's own.
   NullWords(const kinematics::Machine& machine,
+            const std::vector<kinematics::Parameter>& parameters,
             const std::vector<RowModel*>& rows,
             const Eigen::VectorXd& theta);
 
@@ -48,6 +50,7 @@ class NullWords {
   void FindStillDrives();
 
   const kinematics::Machine& machine_;
+  const std::vector<kinematics::Parameter>& parameters_;
   const std::vector<RowModel*>& rows_;
   const Eigen::VectorXd& theta_;
   std::vector<kinematics::MeasuredPose> poses_;  ///< at the measured readings

@@ -25,7 +25,7 @@ PoseRows::PoseRows(const kinematics::Machine& machine,
                    const MeasurementSet& set,
                    std::vector<int> free,
                    const RowNoise& noise)
-    : machine_(machine), free_(std::move(free)), noise_(noise) {
+    : machine_(machine), set_(set), free_(std::move(free)), noise_(noise) {
   const auto drives = static_cast<Eigen::Index>(machine.drives().size());
   drive_variance_.resize(drives);
   for (Eigen::Index i = 0; i < drives; ++i) {
@@ -40,7 +40,7 @@ PoseRows::PoseRows(const kinematics::Machine& machine,
          .sigma_mm = m.sigma_mm.value_or(noise.default_sigma_mm),
          .sigma_rad = m.sigma_rad.value_or(noise.default_sigma_rad),
          .z = machine.home(),
-         .z_second = m.kind == MeasurementKind::kDistance ? machine.home() : Eigen::VectorXd()});
+         .z_second = m.second_readings.size() > 0 ? machine.home() : Eigen::VectorXd()});
   }
 }
 
@@ -53,7 +53,7 @@ void PoseRows::ForEachChunk(
   const std::size_t most = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t threads = std::clamp<std::size_t>(count / kRowsOfAThread, 1, most);
   while (workers_.size() < threads) {
-    workers_.push_back(std::make_unique<PoseWorker>(machine_, free_, drive_variance_));
+    workers_.push_back(std::make_unique<PoseWorker>(machine_, set_, free_, drive_variance_));
     workers_.back()->set_number(workers_.size() - 1);
   }
   for (std::size_t i = 0; i < threads; ++i) workers_[i]->SetGeometry(theta);

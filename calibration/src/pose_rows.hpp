@@ -52,7 +52,8 @@ class PoseWorker;
 
 class PoseRows {
  public:
-  /// `free`: indices into θ. Rows keep pointers to the set's measurements.
+  /// `free`: ascending indices into θ, behind whose own numbers those of the set's fixtures stand.
+  /// Rows keep pointers to the set's measurements.
   PoseRows(const kinematics::Machine& machine,
            const MeasurementSet& set,
            std::vector<int> free,
@@ -105,6 +106,7 @@ class PoseRows {
                     const std::function<void(PoseWorker&, std::size_t, std::size_t)>& work);
 
   const kinematics::Machine& machine_;
+  const MeasurementSet& set_;
   std::vector<int> free_;
   RowNoise noise_;
   Eigen::VectorXd drive_variance_;

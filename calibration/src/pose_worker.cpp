@@ -24,13 +24,20 @@ int Sign(double value) {
   return (value > 0.0 ? 1 : 0) - (value < 0.0 ? 1 : 0);
 }
 
+/// The free numbers below `count`.
+std::vector<int> Below(const std::vector<int>& free, int count) {
+  return {free.begin(), std::lower_bound(free.begin(), free.end(), count)};
+}
+
 }  // namespace
 
 PoseWorker::PoseWorker(const kinematics::Machine& machine,
+                       const MeasurementSet& set,
                        const std::vector<int>& free,
                        const Eigen::VectorXd& drive_variance)
     : machine_(machine),
-      linear_(machine, free),
+      set_(set),
+      linear_(machine, Below(free, static_cast<int>(machine.parameters().size()))),
       drive_variance_(drive_variance),
       drive_length_(drive_variance.size()),
       drives_are_exact_(drive_variance.isZero(0.0)) {
@@ -38,10 +45,20 @@ PoseWorker::PoseWorker(const kinematics::Machine& machine,
     const bool rotary = machine.drives()[static_cast<std::size_t>(i)].rotary;
     drive_length_[i] = rotary ? kRadianLengthMm : 1.0;
   }
+  const auto own = static_cast<int>(machine.parameters().size());
+  for (const int index : free) {
+    if (index >= own) of_fixtures_.push_back(index - own);
+  }
   if (linear_.At(machine.home(), Depth::kByCoordinates) &&
       linear_.readings_by_coordinates().rows() == linear_.readings_by_coordinates().cols()) {
     home_sign_ = Sign(linear_.readings_by_coordinates().partialPivLu().determinant());
   }
+}
+
+void PoseWorker::SetGeometry(const Eigen::VectorXd& theta) {
+  const auto own = static_cast<Eigen::Index>(machine_.parameters().size());
+  linear_.SetGeometry(theta.head(own));
+  fixture_values_ = theta.tail(theta.size() - own);
 }
 
 double PoseWorker::DriveNorm(const Eigen::VectorXd& c) const {
@@ -110,7 +127,8 @@ bool PoseWorker::Evaluate(const Eigen::VectorXd& readings,
   }
   // The rest of c by its first order.
   const Twist rest = -(side->by_readings * c_);
-  side->X_WT = linear_.X_WT();
+  side->X_linear = linear_.X_WT();
+  side->X_WT = side->X_linear;
   side->X_WT.p += rest.head<3>();
   side->X_WT.R = RotationFromVector(rest.tail<3>()) * side->X_WT.R;
   *z = at;
@@ -145,6 +163,26 @@ void PoseWorker::Whiten(const PoseRow& row, const RowMaps& maps, bool with_deriv
   jacobian_.topRows(m) = root.matrixL().solve(Eigen::MatrixXd(jacobian_.topRows(m)));
 }
 
+void PoseWorker::Differentiate(const Measurement& measurement, const RowMaps& maps) {
+  const Eigen::Index m = rho_.size();
+  const Eigen::Index own = first_.by_parameters.cols();
+  const auto others = static_cast<Eigen::Index>(of_fixtures_.size());
+  jacobian_.resize(std::max<Eigen::Index>(m, 6), own + others);
+  auto of_machine = jacobian_.topLeftCorner(m, own);
+  of_machine.noalias() = maps.first.lazyProduct(first_.by_parameters);
+  if (maps.second.rows() > 0) {
+    of_machine.noalias() += maps.second.lazyProduct(second_.by_parameters);
+  }
+  for (Eigen::Index j = 0; j < others; ++j) {
+    const int fixture = of_fixtures_[static_cast<std::size_t>(j)] / 3;
+    const int component = of_fixtures_[static_cast<std::size_t>(j)] % 3;
+    auto column = jacobian_.col(own + j).head(m);
+    column.setZero();
+    if (measurement.target == fixture) column += maps.target.col(component);
+    if (measurement.fixture == fixture) column += maps.fixture.col(component);
+  }
+}
+
 bool PoseWorker::Linearise(PoseRow* row, bool with_derivatives, bool moved) {
   const Measurement& measurement = *row->measurement;
   const bool two = measurement.second_readings.size() > 0;
@@ -153,18 +191,14 @@ bool PoseWorker::Linearise(PoseRow* row, bool with_derivatives, bool moved) {
       !Evaluate(measurement.second_readings, with_derivatives, moved, &row->z_second, &second_)) {
     return false;
   }
-  errors_ = ErrorsOf(measurement, first_.X_WT, second_.X_WT);
+  const FixtureValues fixtures{.fixtures = &set_.fixtures, .value = fixture_values_.data()};
+  errors_ = ErrorsOf(measurement, first_.X_WT, second_.X_WT, fixtures);
   rho_ = errors_.value;
   RowMaps maps;
   if (with_derivatives || !drives_are_exact_) {
-    maps = MapsOf(measurement, first_.X_WT, second_.X_WT);
+    maps = MapsOf(measurement, first_.X_linear, second_.X_linear, fixtures);
   }
-  if (with_derivatives) {
-    const Eigen::Index m = rho_.size();
-    jacobian_.resize(std::max<Eigen::Index>(m, 6), first_.by_parameters.cols());
-    jacobian_.topRows(m).noalias() = maps.first.lazyProduct(first_.by_parameters);
-    if (two) jacobian_.topRows(m).noalias() += maps.second.lazyProduct(second_.by_parameters);
-  }
+  if (with_derivatives) Differentiate(measurement, maps);
   Whiten(*row, maps, with_derivatives);
   return rho_.allFinite();
 }
@@ -184,7 +218,7 @@ bool PoseWorker::AimAt(const Measurement& measurement, Eigen::VectorXd* z) {
   }
   trial_ = machine_.home();
   for (int i = 0; i < 12; ++i) {
-    if (!linear_.At(trial_, Depth::kByCoordinates)) return false;
+    if (!linear_.PoseAt(trial_)) return false;
     Twist error;
     error << p_WT - linear_.X_WT().p,
         RotationVector(measurement.R_WT * linear_.X_WT().R.transpose());

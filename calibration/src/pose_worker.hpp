@@ -14,10 +14,11 @@ namespace kompono::calibration {
 class PoseWorker {
  public:
   PoseWorker(const kinematics::Machine& machine,
+             const MeasurementSet& set,
              const std::vector<int>& free,
              const Eigen::VectorXd& drive_variance);
 
-  void SetGeometry(const Eigen::VectorXd& theta) { linear_.SetGeometry(theta); }
+  void SetGeometry(const Eigen::VectorXd& theta);
   void set_number(std::size_t number) { number_ = number; }
   [[nodiscard]] std::size_t number() const { return number_; }
 
@@ -44,7 +45,8 @@ class PoseWorker {
 
   /// What one set of readings gives, coordinates eliminated.
   struct Side {
-    Pose<double> X_WT;  ///< at coordinates that meet the readings to first order
+    Pose<double> X_linear;  ///< where the derivatives were taken
+    Pose<double> X_WT;      ///< at coordinates that meet the readings to first order
     Eigen::Matrix<double, 6, Eigen::Dynamic> by_readings;    ///< V_z Q_z⁻¹
     Eigen::Matrix<double, 6, Eigen::Dynamic> by_parameters;  ///< readings kept
   };
@@ -56,6 +58,7 @@ class PoseWorker {
                               bool moved,
                               Eigen::VectorXd* z,
                               Side* side);
+  void Differentiate(const Measurement& measurement, const RowMaps& maps);
   void Whiten(const PoseRow& row, const RowMaps& maps, bool with_derivatives);
   /// Coordinates at which the tool stands where a full pose was measured.
   [[nodiscard]] bool AimAt(const Measurement& measurement, Eigen::VectorXd* z);
@@ -63,7 +66,10 @@ class PoseWorker {
   [[nodiscard]] bool OnTheBranchOfHome() const;
 
   const kinematics::Machine& machine_;
-  kinematics::Linearisation linear_;
+  const MeasurementSet& set_;
+  kinematics::Linearisation linear_;  ///< by the machine's own free numbers
+  std::vector<int> of_fixtures_;      ///< free numbers of fixtures, counted from the first one
+  Eigen::VectorXd fixture_values_;
   Eigen::VectorXd drive_variance_;
   Eigen::VectorXd drive_length_;  ///< mm per unit of a reading
   bool drives_are_exact_ = true;

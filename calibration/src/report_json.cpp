@@ -59,10 +59,11 @@ json Row(const RowResidual& row) {
            {"line", row.line},
            {"kind", Name(row.kind)},
            {"held_out", row.held_out},
+           {"rejected", row.rejected},
            {"before_mm", row.before_mm},
            {"after_mm", row.after_mm},
            {"after_sigmas", row.after_sigmas}};
-  if (row.kind == MeasurementKind::kPose) {
+  if (row.kind == MeasurementKind::kPose || row.kind == MeasurementKind::kRelative) {
     out["before_deg"] = row.before_rad * kDegPerRad;
     out["after_deg"] = row.after_rad * kDegPerRad;
   }
@@ -77,6 +78,7 @@ json ToJson(const CalibrationReport& report) {
            {"iterations", report.iterations},
            {"rows_fitted", report.rows_fitted},
            {"rows_held_out", report.rows_held_out},
+           {"rows_rejected", report.rejected},
            {"numbers", report.numbers},
            {"free_parameters", report.free.size()},
            {"rank", report.rank},

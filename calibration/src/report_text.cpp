@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -91,6 +92,11 @@ std::string Summary(const CalibrationReport& report) {
                       report.free.size(),
                       report.rank,
                       report.rows_held_out);
+  if (!report.rejected.empty()) {
+    text += fmt::format("  left out as outliers: {} {}\n",
+                        report.rejected.size() == 1 ? "row" : "rows",
+                        fmt::join(report.rejected, ", "));
+  }
   text += fmt::format("  cost {:.6g} -> {:.6g} in {} iterations, {:.1f} ms ({:.1f} ms in all)\n",
                       report.cost_before,
                       report.cost_after,
@@ -170,9 +176,11 @@ std::string Residuals(const CalibrationReport& report) {
                std::string(Name(row.kind)),
                Length(row.before_mm),
                Length(row.after_mm),
-               row.kind == MeasurementKind::kPose ? Angle(row.after_rad) : std::string(),
+               row.after_rad > 0.0 ? Angle(row.after_rad) : std::string(),
                fmt::format("{:.2f}", row.after_sigmas),
-               row.held_out ? "held out" : ""});
+               row.held_out   ? "held out"
+               : row.rejected ? "rejected"
+                              : ""});
   }
   return "\n" + table.Render();
 }
@@ -200,6 +208,7 @@ Parsed<std::string> CalibratedLayout(const kinematics::Machine& machine,
   }
   std::vector<layout::Replacement> replacements;
   for (const IdentifiedParameter& parameter : report.parameters) {
+    if (machine.FindParameter(parameter.name) < 0) continue;  // of the instrument
     replacements.push_back({parameter.name, parameter.after, parameter.sigma});
   }
   return layout::ReplaceNumbers(machine.layout(), registry, replacements, source);

@@ -12,12 +12,6 @@ using kinematics::SolveStatus;
 
 namespace {
 
-Eigen::Matrix3d Cross(const Eigen::Vector3d& r) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -r.z(), r.y(), r.z(), 0.0, -r.x(), -r.y(), r.x(), 0.0;
-  return matrix;
-}
-
 int MeasuredComponents(const Measurement& measurement) {
   int count = 0;
   for (const std::optional<double>& component : measurement.position_mm) {
@@ -58,87 +52,38 @@ Eigen::Matrix3d RotationFromVector(const Eigen::Vector3d& rotation) {
   return Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
 }
 
+Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& r) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -r.z(), r.y(), r.z(), 0.0, -r.x(), -r.y(), r.x(), 0.0;
+  return matrix;
+}
+
 Eigen::Matrix3d LeftJacobianInverse(const Eigen::Vector3d& r) {
   const double angle = r.norm();
   // Series of (1 - (x/2) cot(x/2)) / x²; the first dropped term x⁴/30240 is below 4e-13 at 0.01.
   const double factor = angle < 1e-2
                             ? 1.0 / 12.0 + angle * angle / 720.0
                             : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / (angle * angle);
-  const Eigen::Matrix3d cross = Cross(r);
+  const Eigen::Matrix3d cross = CrossMatrix(r);
   return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
 }
 
-RowErrors ErrorsOf(const Measurement& measurement,
-                   const Pose<double>& X_WT,
-                   const Pose<double>& X_WT_second) {
-  RowErrors errors;
-  errors.value.resize(measurement.Numbers());
-  errors.lengths = static_cast<int>(errors.value.size());
-  switch (measurement.kind) {
-    case MeasurementKind::kHeight:
-      errors.value[0] = X_WT.p.z() - measurement.value_mm;
-      break;
-    case MeasurementKind::kDistance:
-      errors.value[0] = (X_WT.p - X_WT_second.p).norm() - measurement.value_mm;
-      break;
-    case MeasurementKind::kPose:
-    case MeasurementKind::kPosition: {
-      int at = 0;
-      for (int i = 0; i < 3; ++i) {
-        const std::optional<double>& measured =
-            measurement.position_mm[static_cast<std::size_t>(i)];
-        if (measured) errors.value[at++] = X_WT.p[i] - *measured;
-      }
-      errors.lengths = at;
-      if (measurement.kind == MeasurementKind::kPose) {
-        errors.value.tail<3>() = RotationVector(X_WT.R * measurement.R_WT.transpose());
-      }
-      break;
-    }
-  }
-  return errors;
-}
-
-RowMaps MapsOf(const Measurement& measurement,
-               const Pose<double>& X_WT,
-               const Pose<double>& X_WT_second) {
-  RowMaps maps;
-  maps.first.setZero(measurement.Numbers(), 6);
-  switch (measurement.kind) {
-    case MeasurementKind::kHeight:
-      maps.first(0, 2) = 1.0;
-      break;
-    case MeasurementKind::kDistance: {
-      const Eigen::Vector3d between = X_WT.p - X_WT_second.p;
-      const double distance = between.norm();
-      if (distance > 0.0) maps.first.block<1, 3>(0, 0) = between.transpose() / distance;
-      maps.second = -maps.first;
-      break;
-    }
-    case MeasurementKind::kPose:
-    case MeasurementKind::kPosition: {
-      int at = 0;
-      for (int i = 0; i < 3; ++i) {
-        if (measurement.position_mm[static_cast<std::size_t>(i)]) maps.first(at++, i) = 1.0;
-      }
-      if (measurement.kind == MeasurementKind::kPose) {
-        maps.first.bottomRightCorner<3, 3>() =
-            LeftJacobianInverse(RotationVector(X_WT.R * measurement.R_WT.transpose()));
-      }
-      break;
-    }
-  }
-  return maps;
+bool HasRotation(MeasurementKind kind) {
+  return kind == MeasurementKind::kPose || kind == MeasurementKind::kRelative;
 }
 
 int Measurement::Numbers() const {
   switch (kind) {
     case MeasurementKind::kHeight:
     case MeasurementKind::kDistance:
+    case MeasurementKind::kBallBar:
+    case MeasurementKind::kPlane:
       return 1;
     case MeasurementKind::kPosition:
+    case MeasurementKind::kHole:
       return MeasuredComponents(*this);
     case MeasurementKind::kPose:
+    case MeasurementKind::kRelative:
       break;
   }
   return MeasuredComponents(*this) + 3;
@@ -162,9 +107,14 @@ RowModel::Prediction RowModel::FindStart(const Eigen::VectorXd& theta, const Row
     start_ = second_start_ = neighbour->start_;
     prediction = Predict(theta, false);
   }
-  if (!prediction.ok() && measurement_->kind != MeasurementKind::kDistance) {
-    const kinematics::Solution aimed = machine_->Inverse(
-        TargetOf(*measurement_, machine_->layout().rotation_order), theta, machine_->home());
+  const bool aims = measurement_->kind == MeasurementKind::kHeight ||
+                    measurement_->kind == MeasurementKind::kPosition ||
+                    measurement_->kind == MeasurementKind::kPose;
+  if (!prediction.ok() && aims && measurement_->target < 0) {
+    const kinematics::Solution aimed =
+        machine_->Inverse(TargetOf(*measurement_, machine_->layout().rotation_order),
+                          theta.head(static_cast<Eigen::Index>(machine_->parameters().size())),
+                          machine_->home());
     if (aimed.ok()) {
       start_ = aimed.coordinates;
       prediction = Predict(theta, false);
@@ -176,54 +126,29 @@ RowModel::Prediction RowModel::FindStart(const Eigen::VectorXd& theta, const Row
 
 RowModel::Prediction RowModel::Predict(const Eigen::VectorXd& theta, bool with_derivatives) const {
   Prediction prediction;
-  prediction.first = machine_->Measure(measurement_->readings, theta, start_, with_derivatives);
+  // Behind the machine's numbers fixtures may follow.
+  const Eigen::VectorXd own = theta.head(static_cast<Eigen::Index>(machine_->parameters().size()));
+  prediction.first = machine_->Measure(measurement_->readings, own, start_, with_derivatives);
   prediction.second.status = SolveStatus::kConverged;
-  if (measurement_->kind == MeasurementKind::kDistance &&
+  if (measurement_->second_readings.size() > 0 &&
       prediction.first.status == SolveStatus::kConverged) {
     prediction.second =
-        machine_->Measure(measurement_->second_readings, theta, second_start_, with_derivatives);
+        machine_->Measure(measurement_->second_readings, own, second_start_, with_derivatives);
   }
   return prediction;
 }
 
 void RowModel::StartFrom(const Prediction& prediction) {
   start_ = prediction.first.coordinates;
-  if (measurement_->kind == MeasurementKind::kDistance) {
+  if (measurement_->second_readings.size() > 0) {
     second_start_ = prediction.second.coordinates;
   }
 }
 
-RowErrors RowModel::Whitened(const Prediction& prediction) const {
-  RowErrors errors = Errors(prediction);
+RowErrors RowModel::Whitened(const Prediction& prediction, const FixtureValues& fixtures) const {
+  RowErrors errors = Errors(prediction, fixtures);
   for (Eigen::Index i = 0; i < errors.value.size(); ++i) errors.value[i] *= Weight(errors, i);
   return errors;
-}
-
-void RowModel::Jacobian(
-    const Prediction& prediction,
-    const std::vector<int>& free,
-    const Eigen::VectorXd& scale,
-    Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian)
-    const {
-  RowMaps maps = MapsOf(*measurement_, prediction.first.X_WT, prediction.second.X_WT);
-  const bool distance = measurement_->kind == MeasurementKind::kDistance;
-  const int lengths = measurement_->kind == MeasurementKind::kPose ? size_ - 3 : size_;
-  for (int i = 0; i < size_; ++i) {
-    const double weight = 1.0 / (i < lengths ? sigma_mm_ : sigma_rad_);
-    maps.first.row(i) *= weight;
-    if (distance) maps.second.row(i) *= weight;
-  }
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    const Eigen::Matrix<double, 6, 1> twist =
-        prediction.first.by_parameters.col(free[j]) * scale[column];
-    jacobian.col(column) = maps.first * twist;
-    if (distance) {
-      const Eigen::Matrix<double, 6, 1> second =
-          prediction.second.by_parameters.col(free[j]) * scale[column];
-      jacobian.col(column) += maps.second * second;
-    }
-  }
 }
 
 }  // namespace kompono::calibration

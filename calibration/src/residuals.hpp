@@ -20,12 +20,23 @@ struct RowErrors {
   [[nodiscard]] double AngleNorm() const { return value.tail(value.size() - lengths).norm(); }
 };
 
-/// Derivatives of RowErrors by the twists (v, ω) of the tool at the first and second readings.
-struct RowMaps {
-  using Map = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
-  Map first, second;  ///< second only for a distance
+/// The set's fixtures with the values they have now: three numbers for each.
+struct FixtureValues {
+  const std::vector<Fixture>* fixtures = nullptr;
+  const double* value = nullptr;
 };
 
+/// Derivatives of RowErrors by the twists (v, ω) of the tool at the first and second readings and
+/// by the three numbers of the row's target and fixture.
+struct RowMaps {
+  using Map = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
+  using PointMap = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, 6, 3>;
+  Map first, second;         ///< second only for rows with two readings
+  PointMap target, fixture;  ///< only for rows that have them
+};
+
+/// r x as a matrix.
+[[nodiscard]] Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& r);
 /// log(R): the rotation vector.
 [[nodiscard]] Eigen::Vector3d RotationVector(const Eigen::Matrix3d& R);
 [[nodiscard]] Eigen::Matrix3d RotationFromVector(const Eigen::Vector3d& rotation);
@@ -34,16 +45,20 @@ struct RowMaps {
 
 [[nodiscard]] RowErrors ErrorsOf(const Measurement& measurement,
                                  const Pose<double>& X_WT,
-                                 const Pose<double>& X_WT_second);
+                                 const Pose<double>& X_WT_second,
+                                 const FixtureValues& fixtures = {});
 [[nodiscard]] RowMaps MapsOf(const Measurement& measurement,
                              const Pose<double>& X_WT,
-                             const Pose<double>& X_WT_second);
+                             const Pose<double>& X_WT_second,
+                             const FixtureValues& fixtures = {});
+/// Rows whose last three numbers are a rotation vector.
+[[nodiscard]] bool HasRotation(MeasurementKind kind);
 
 /// One row with its machine, its weights and the coordinates from which its forward problem starts.
 class RowModel {
  public:
   struct Prediction {
-    kinematics::MeasuredPose first, second;  ///< second only for a distance
+    kinematics::MeasuredPose first, second;  ///< second only for rows with two readings
     [[nodiscard]] bool ok() const { return status() == kinematics::SolveStatus::kConverged; }
     [[nodiscard]] kinematics::SolveStatus status() const {
       return first.status != kinematics::SolveStatus::kConverged ? first.status : second.status;
@@ -70,17 +85,14 @@ class RowModel {
   [[nodiscard]] const Measurement& measurement() const { return *measurement_; }
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
-  [[nodiscard]] RowErrors Errors(const Prediction& prediction) const {
-    return ErrorsOf(*measurement_, prediction.first.X_WT, prediction.second.X_WT);
+  /// `fixtures`: of the set the row is in.
+  [[nodiscard]] RowErrors Errors(const Prediction& prediction,
+                                 const FixtureValues& fixtures = {}) const {
+    return ErrorsOf(*measurement_, prediction.first.X_WT, prediction.second.X_WT, fixtures);
   }
   /// Errors divided by their standard deviations.
-  [[nodiscard]] RowErrors Whitened(const Prediction& prediction) const;
-  /// d Whitened / dθ[free] * scale; `size()` rows.
-  void Jacobian(const Prediction& prediction,
-                const std::vector<int>& free,
-                const Eigen::VectorXd& scale,
-                Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>
-                    jacobian) const;
+  [[nodiscard]] RowErrors Whitened(const Prediction& prediction,
+                                   const FixtureValues& fixtures = {}) const;
 
  private:
   [[nodiscard]] double Weight(const RowErrors& errors, Eigen::Index i) const {

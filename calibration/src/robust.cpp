@@ -26,19 +26,36 @@ class RobustSolver {
     }
   }
 
-  RobustFit Run(const Eigen::VectorXd& u) {
-    RobustFit out{.fit = SolveLeastSquares(problem_, u)};
-    const int spare = total_ - static_cast<int>(problem_.selection->size());
-    if (!out.fit.converged || spare < 3 || Outside(out.fit, {}).empty()) return out;
-    Fit robust = Narrow(out.fit);
+  RobustFit Run(const Eigen::VectorXd& u, bool near) {
+    RobustFit out;
+    Fit robust;
+    if (near) {
+      const NormalEquations rows =
+          problem_.rows->Assemble(problem_.selection->Theta(u.data()), problem_.chosen, {}, false);
+      robust.u = u;
+      robust.squares = rows.squares;
+      if (!rows.ok || Outside(robust, {}).empty()) {
+        out.fit = SolveLeastSquares(problem_, u);
+        return out;
+      }
+    } else {
+      out.fit = SolveLeastSquares(problem_, u);
+      const int spare = total_ - static_cast<int>(problem_.selection->size());
+      if (!out.fit.converged || spare < 3 || Outside(out.fit, {}).empty()) return out;
+      robust = Narrow(out.fit);
+    }
     std::vector<std::size_t> rejected = Outside(robust, {});
     for (int round = 0; round < kMostRounds; ++round) {
       if (static_cast<double>(rejected.size()) > kMostRejected * static_cast<double>(all_.size())) {
         out.too_many = true;
+        if (near) out.fit = FitWithout({}, u);
         return out;
       }
       Fit kept = FitWithout(rejected, robust.u);
-      if (!kept.converged) return out;
+      if (!kept.converged) {
+        if (near) out.fit = std::move(kept);
+        return out;
+      }
       kept.iterations += out.fit.iterations;
       kept.solver_ms += out.fit.solver_ms;
       kept.cost_before = out.fit.cost_before;
@@ -131,8 +148,11 @@ class RobustSolver {
 
 }  // namespace
 
-RobustFit SolveRobustly(LeastSquares problem, const Eigen::VectorXd& u, bool scale_known) {
-  return RobustSolver(std::move(problem), scale_known).Run(u);
+RobustFit SolveRobustly(LeastSquares problem,
+                        const Eigen::VectorXd& u,
+                        bool scale_known,
+                        bool near) {
+  return RobustSolver(std::move(problem), scale_known).Run(u, near);
 }
 
 }  // namespace kompono::calibration

@@ -51,13 +51,21 @@ class Selector {
   Selector(const kinematics::Machine& machine,
            const MeasurementSet& set,
            const IdentifyOptions& options)
-      : machine_(machine), set_(set), options_(options), chosen_(machine.parameters().size()) {}
+      : machine_(machine),
+        set_(set),
+        options_(options),
+        parameters_(AllParameters(machine, set)),
+        chosen_(parameters_.size()) {}
 
   Parsed<Selection> Select() {
     ChooseFree();
+    // What is not known of the instrument has to be found whatever of the machine is asked for.
+    for (std::size_t i = machine_.parameters().size(); i < chosen_.size(); ++i) {
+      chosen_[i] = chosen_[i] || parameters_[i].identifiable;
+    }
     ChooseLocked();
     Selection selection;
-    selection.nominal = machine_.nominal();
+    selection.nominal = AllNominal(machine_, set_);
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
       if (chosen_[i]) selection.free.push_back(static_cast<int>(i));
     }
@@ -71,13 +79,14 @@ class Selector {
     }
     GivePriors(&selection);
     GiveBounds(&selection);
+    selection.parameters = parameters_;
     if (!complaints_.empty()) return tl::unexpected(std::move(complaints_));
     return selection;
   }
 
  private:
   [[nodiscard]] const kinematics::Parameter& At(int index) const {
-    return machine_.parameters()[static_cast<std::size_t>(index)];
+    return parameters_[static_cast<std::size_t>(index)];
   }
   [[nodiscard]] const layout::CalibrationSettings& settings() const {
     return machine_.layout().calibration;
@@ -94,7 +103,7 @@ class Selector {
       Mark(set_.suggested_free, true, set_.origin);
     } else {
       for (std::size_t i = 0; i < chosen_.size(); ++i) {
-        chosen_[i] = machine_.parameters()[i].identifiable;
+        chosen_[i] = parameters_[i].identifiable;
       }
     }
     KeepSuggested();
@@ -104,7 +113,7 @@ class Selector {
   void KeepSuggested() {
     if (set_.suggested_free.empty()) return;
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
-      const std::string& name = machine_.parameters()[i].name;
+      const std::string& name = parameters_[i].name;
       chosen_[i] = chosen_[i] && std::any_of(set_.suggested_free.begin(),
                                              set_.suggested_free.end(),
                                              [&name](const std::string& pattern) {
@@ -128,8 +137,8 @@ class Selector {
 
   std::vector<int> Matching(const std::string& pattern, std::string_view where) {
     std::vector<int> matching;
-    for (std::size_t i = 0; i < machine_.parameters().size(); ++i) {
-      if (NamesParameter(machine_, pattern, machine_.parameters()[i].name)) {
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      if (NamesParameter(machine_, pattern, parameters_[i].name)) {
         matching.push_back(static_cast<int>(i));
       }
     }
@@ -199,6 +208,7 @@ class Selector {
   const kinematics::Machine& machine_;
   const MeasurementSet& set_;
   const IdentifyOptions& options_;
+  std::vector<kinematics::Parameter> parameters_;
   std::vector<bool> chosen_;
   Diagnostics complaints_;
 };

@@ -13,10 +13,11 @@ namespace kompono::calibration {
 
 /// The unknowns: u_i = (θ_i - nominal_i) / scale_i, so that one unit of each is about as likely.
 struct Selection {
-  std::vector<int> free;                                     ///< indices into θ, ascending
-  Eigen::VectorXd scale;                                     ///< mm or rad per unit of u
-  Eigen::VectorXd nominal;                                   ///< of the whole θ
-  std::vector<std::optional<double>> prior;                  ///< standard deviation; mm, rad
+  std::vector<kinematics::Parameter> parameters;  ///< of θ: the machine's and the fixtures'
+  std::vector<int> free;                          ///< indices into θ, ascending
+  Eigen::VectorXd scale;                          ///< mm or rad per unit of u
+  Eigen::VectorXd nominal;                        ///< of the whole θ
+  std::vector<std::optional<double>> prior;       ///< standard deviation; mm, rad
   std::vector<std::optional<std::array<double, 2>>> bounds;  ///< mm, rad
 
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(free.size()); }

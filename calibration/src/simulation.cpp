@@ -143,36 +143,60 @@ class PoseSampler {
   std::vector<std::optional<std::array<double, 2>>> ranges_;
 };
 
-/// What the instrument says of true poses.
+bool TwoReadings(MeasurementKind kind) {
+  return kind == MeasurementKind::kDistance || kind == MeasurementKind::kRelative;
+}
+
+/// What the instrument says of true poses: what an error-free row would be off from one that
+/// measured nothing but zeros.
 void ReadInstrument(const SimulateOptions& options,
                     double noise,
                     const Pose<double>& X_WT,
                     const Pose<double>& X_WT_second,
+                    const FixtureValues& fixtures,
                     PoseSampler& sampler,
                     Measurement* measurement) {
   const double sigma_mm = options.sigma_mm * noise;
-  switch (options.kind) {
-    case MeasurementKind::kHeight:
-      measurement->value_mm = X_WT.p.z() + sampler.Noise(sigma_mm);
-      return;
-    case MeasurementKind::kDistance:
-      measurement->value_mm =
-          std::max(0.0, (X_WT.p - X_WT_second.p).norm() + sampler.Noise(sigma_mm));
-      return;
-    case MeasurementKind::kPosition:
-    case MeasurementKind::kPose:
-      break;
+  const bool turned = HasRotation(options.kind);
+  const bool point = turned || options.kind == MeasurementKind::kPosition ||
+                     options.kind == MeasurementKind::kHole;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool in_plane = options.kind != MeasurementKind::kHole || k < 2;
+    if (point && in_plane && (turned || options.components[k])) measurement->position_mm[k] = 0.0;
   }
-  const bool pose = options.kind == MeasurementKind::kPose;
-  for (int i = 0; i < 3; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double noisy = X_WT.p[i] + sampler.Noise(sigma_mm);
-    if (pose || options.components[k]) measurement->position_mm[k] = noisy;
+  const RowErrors zero = ErrorsOf(*measurement, X_WT, X_WT_second, fixtures);
+  int at = 0;
+  for (std::optional<double>& component : measurement->position_mm) {
+    if (component) component = zero.value[at++] + sampler.Noise(sigma_mm);
   }
-  if (!pose) return;
+  if (!point) {
+    measurement->value_mm = zero.value[0] + sampler.Noise(sigma_mm);
+    const bool is_distance =
+        options.kind == MeasurementKind::kDistance || options.kind == MeasurementKind::kBallBar;
+    if (is_distance) measurement->value_mm = std::max(0.0, measurement->value_mm);
+  }
+  if (!turned) return;
   Eigen::Vector3d turn;
   for (double& component : turn) component = sampler.Noise(options.sigma_rad * noise);
-  measurement->R_WT = RotationFromVector(turn) * X_WT.R;
+  const Eigen::Matrix3d R = options.kind == MeasurementKind::kRelative
+                                ? Eigen::Matrix3d(X_WT.R.transpose() * X_WT_second.R)
+                                : X_WT.R;
+  measurement->R_WT = RotationFromVector(turn) * R;
+}
+
+/// Gives row `i` the next of the targets and of the other fixtures.
+void AssignFixtures(const std::vector<Fixture>& fixtures, int i, Measurement* measurement) {
+  std::vector<int> targets;
+  std::vector<int> others;
+  for (std::size_t k = 0; k < fixtures.size(); ++k) {
+    (fixtures[k].kind == FixtureKind::kTarget ? targets : others).push_back(static_cast<int>(k));
+  }
+  const auto row = static_cast<std::size_t>(i);
+  if (!targets.empty()) measurement->target = targets[row % targets.size()];
+  // The turns differ, so that every target meets every centre.
+  if (!others.empty()) {
+    measurement->fixture = others[(row / std::max<std::size_t>(1, targets.size())) % others.size()];
+  }
 }
 
 Diagnostics CheckSimulation(const kinematics::Machine& nominal,
@@ -220,6 +244,10 @@ Parsed<MeasurementSet> Simulate(const kinematics::Machine& nominal,
   }
   if (!complaints.empty()) return tl::unexpected(std::move(complaints));
   MeasurementSet set;
+  set.fixtures = options.fixtures;
+  const Eigen::VectorXd values =
+      AllNominal(truth, set).tail(3 * static_cast<Eigen::Index>(set.fixtures.size()));
+  const FixtureValues fixtures{.fixtures = &set.fixtures, .value = values.data()};
   const int wanted = options.count + options.held_out;
   const auto go = [&](Eigen::VectorXd* readings) {
     kinematics::Solution there;
@@ -239,7 +267,7 @@ Parsed<MeasurementSet> Simulate(const kinematics::Machine& nominal,
     measurement.held_out = i >= options.count;
     const kinematics::Solution first = go(&measurement.readings);
     kinematics::Solution second = first;
-    if (options.kind == MeasurementKind::kDistance) second = go(&measurement.second_readings);
+    if (TwoReadings(options.kind)) second = go(&measurement.second_readings);
     if (!first.ok() || !second.ok()) {
       return tl::unexpected(Diagnostics{Complaint(
           nominal,
@@ -249,9 +277,10 @@ Parsed<MeasurementSet> Simulate(const kinematics::Machine& nominal,
           "make the region smaller or the drives' ranges larger")});
     }
     const double noise = measurement.held_out && options.held_out_without_noise ? 0.0 : 1.0;
-    ReadInstrument(options, noise, first.X_WT, second.X_WT, sampler, &measurement);
+    AssignFixtures(options.fixtures, i, &measurement);
+    ReadInstrument(options, noise, first.X_WT, second.X_WT, fixtures, sampler, &measurement);
     if (options.sigma_mm > 0.0) measurement.sigma_mm = options.sigma_mm;
-    if (options.sigma_rad > 0.0 && options.kind == MeasurementKind::kPose) {
+    if (options.sigma_rad > 0.0 && HasRotation(options.kind)) {
       measurement.sigma_rad = options.sigma_rad;
     }
     set.measurements.push_back(std::move(measurement));

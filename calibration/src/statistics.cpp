@@ -35,7 +35,7 @@ struct Sums {
 };
 
 std::string_view LengthQuantity(MeasurementKind kind) {
-  return kind == MeasurementKind::kPose ? "position" : Name(kind);
+  return HasRotation(kind) ? "position" : Name(kind);
 }
 
 void AddStatistics(const std::map<std::pair<bool, std::string>, Sums>& sums,
@@ -221,7 +221,7 @@ void JudgeRows(const MeasurementSet& set,
                          .after_mm = after.LengthNorm()};
     residual.after_sigmas =
         std::sqrt(judged[k].whitened_square / static_cast<double>(measurement.Numbers()));
-    if (measurement.kind == MeasurementKind::kPose) {
+    if (HasRotation(measurement.kind)) {
       residual.before_rad = row.before.AngleNorm();
       residual.after_rad = after.AngleNorm();
     }
@@ -229,23 +229,31 @@ void JudgeRows(const MeasurementSet& set,
     if (row.rejected) continue;
     sums[{row.held_out, std::string(LengthQuantity(measurement.kind))}].Add(residual.before_mm,
                                                                             residual.after_mm);
-    if (measurement.kind == MeasurementKind::kPose) {
+    if (HasRotation(measurement.kind)) {
       sums[{row.held_out, "orientation"}].Add(residual.before_rad, residual.after_rad);
     }
   }
   AddStatistics(sums, report);
 }
 
-void JudgeTool(const std::vector<std::size_t>& fitted, PoseRows* poses, CalibrationReport* report) {
+void JudgeTool(const std::vector<std::size_t>& fitted,
+               const Eigen::VectorXd& theta,
+               PoseRows* poses,
+               CalibrationReport* report) {
   double sum = 0.0;
   int count = 0;
   const std::size_t stride = fitted.size() / kMostToolRows + 1;
-  const auto n = static_cast<Eigen::Index>(report->free.size());
-  Eigen::Matrix<double, 6, Eigen::Dynamic> twists(6, n);
+  // Fixtures, whose numbers stand last, do not move the tool.
+  const auto own = static_cast<Eigen::Index>(
+      std::count_if(report->free.begin(), report->free.end(), [report](int index) {
+        return index < report->theta_after.size();
+      }));
+  const Eigen::MatrixXd covariance = report->covariance.topLeftCorner(own, own);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> twists(6, own);
   for (std::size_t i = 0; i < fitted.size(); i += stride) {
-    if (!poses->ToolByParameters(report->theta_after, fitted[i], &twists)) continue;
+    if (!poses->ToolByParameters(theta, fitted[i], &twists)) continue;
     const Eigen::MatrixXd J = twists.topRows<3>();
-    const double square = (J * report->covariance).cwiseProduct(J).sum();
+    const double square = (J * covariance).cwiseProduct(J).sum();
     sum += square;
     report->tool_sigma_max_mm = std::max(report->tool_sigma_max_mm, std::sqrt(square));
     ++count;
@@ -253,8 +261,9 @@ void JudgeTool(const std::vector<std::size_t>& fitted, PoseRows* poses, Calibrat
   if (count > 0) report->tool_sigma_rms_mm = std::sqrt(sum / count);
 }
 
-void JudgeParameters(const kinematics::Machine& machine,
-                     const Selection& selection,
+void JudgeParameters(const Selection& selection,
+                     const Eigen::VectorXd& theta_before,
+                     const Eigen::VectorXd& theta_after,
                      const RankAnalysis& analysis,
                      const std::vector<bool>& at_bound,
                      const IdentifyOptions& options,
@@ -265,11 +274,11 @@ void JudgeParameters(const kinematics::Machine& machine,
   for (Eigen::Index i = 0; i < selection.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const kinematics::Parameter& parameter =
-        machine.parameters()[static_cast<std::size_t>(selection.free[k])];
+        selection.parameters[static_cast<std::size_t>(selection.free[k])];
     IdentifiedParameter identified{.name = parameter.name,
                                    .angle = parameter.angle,
-                                   .before = report->theta_before[selection.free[k]],
-                                   .after = report->theta_after[selection.free[k]],
+                                   .before = theta_before[selection.free[k]],
+                                   .after = theta_after[selection.free[k]],
                                    .tolerance = parameter.tolerance,
                                    .at_bound = at_bound[k]};
     identified.determined = analysis.null_unit.row(i).norm() < 1e-6;

@@ -29,15 +29,19 @@ void JudgeRows(const MeasurementSet& set,
                CalibrationReport* report);
 
 /// Parameters with deviations, bounds and correlations; the tool's predicted deviation.
-void JudgeParameters(const kinematics::Machine& machine,
-                     const Selection& selection,
+void JudgeParameters(const Selection& selection,
+                     const Eigen::VectorXd& theta_before,
+                     const Eigen::VectorXd& theta_after,
                      const RankAnalysis& analysis,
                      const std::vector<bool>& at_bound,
                      const IdentifyOptions& options,
                      CalibrationReport* report);
 
 /// The tool's predicted deviation over some of the rows in `fitted`.
-void JudgeTool(const std::vector<std::size_t>& fitted, PoseRows* poses, CalibrationReport* report);
+void JudgeTool(const std::vector<std::size_t>& fitted,
+               const Eigen::VectorXd& theta,
+               PoseRows* poses,
+               CalibrationReport* report);
 
 /// Warnings about a result that can be used but should be looked at.
 void WarnOfDoubts(const MeasurementSet& set, const Selection& selection, CalibrationReport* report);

@@ -39,6 +39,16 @@ void ScaleReadings(const kinematics::Machine& machine, double factor, Eigen::Vec
   }
 }
 
+/// Values of the set's fixtures.
+Eigen::VectorXd FixturesOf(const MeasurementSet& set) {
+  Eigen::VectorXd values(3 * static_cast<Eigen::Index>(set.fixtures.size()));
+  Eigen::Index at = 0;
+  for (const Fixture& fixture : set.fixtures) {
+    for (const double value : fixture.value) values[at++] = value;
+  }
+  return values;
+}
+
 struct Sample {
   const Measurement* measurement;
   RowModel::Prediction prediction;
@@ -66,7 +76,12 @@ std::vector<Sample> Predict(const kinematics::Machine& machine,
   return samples;
 }
 
-MedianError ErrorOf(const std::vector<Sample>& samples, double lengths, double rotations) {
+MedianError ErrorOf(const MeasurementSet& set,
+                    const std::vector<Sample>& samples,
+                    double lengths,
+                    double rotations) {
+  const Eigen::VectorXd values = FixturesOf(set);
+  const FixtureValues fixtures{.fixtures = &set.fixtures, .value = values.data()};
   std::vector<double> errors;
   std::vector<double> angles;
   for (const Sample& sample : samples) {
@@ -80,10 +95,10 @@ MedianError ErrorOf(const std::vector<Sample>& samples, double lengths, double r
     }
     const bool ok = sample.prediction.ok();
     const double infinity = std::numeric_limits<double>::infinity();
-    const RowErrors error =
-        ErrorsOf(measurement, sample.prediction.first.X_WT, sample.prediction.second.X_WT);
+    const RowErrors error = ErrorsOf(
+        measurement, sample.prediction.first.X_WT, sample.prediction.second.X_WT, fixtures);
     errors.push_back(ok ? error.LengthNorm() : infinity);
-    if (measurement.kind == MeasurementKind::kPose) {
+    if (HasRotation(measurement.kind)) {
       angles.push_back(ok ? error.AngleNorm() : infinity);
     }
   }
@@ -126,7 +141,7 @@ class UnitCheck {
 
   void Run() {
     const std::vector<Sample> samples = Predict(machine_, set_, 1.0);
-    const MedianError before = ErrorOf(samples, 1.0, 1.0);
+    const MedianError before = ErrorOf(set_, samples, 1.0, 1.0);
     if (before.mm > kSuspiciousMm && DoubtLengths(samples, before.mm)) return;
     DoubtRotations(samples, before.rad);
   }
@@ -140,9 +155,9 @@ class UnitCheck {
                                                Suspect{true, 1e-3, "micrometres"}};
     for (const Suspect& suspect : kSuspects) {
       if (suspect.readings && !WithinLimits(machine_, set_, suspect.factor)) continue;
-      const MedianError after = suspect.readings
-                                    ? ErrorOf(Predict(machine_, set_, suspect.factor), 1.0, 1.0)
-                                    : ErrorOf(samples, suspect.factor, 1.0);
+      const MedianError after =
+          suspect.readings ? ErrorOf(set_, Predict(machine_, set_, suspect.factor), 1.0, 1.0)
+                           : ErrorOf(set_, samples, suspect.factor, 1.0);
       if (!std::isfinite(after.mm) || after.mm * kGain > to_beat_mm) continue;
       const Role lengths = columns_.Has(Role::kPosition) ? Role::kPosition : Role::kValue;
       Complain(suspect.readings ? Role::kReading : lengths,
@@ -165,7 +180,7 @@ class UnitCheck {
         !columns_.Has(Role::kRotationVector)) {
       return;
     }
-    const MedianError after = ErrorOf(samples, 1.0, std::numbers::pi / 180.0);
+    const MedianError after = ErrorOf(set_, samples, 1.0, std::numbers::pi / 180.0);
     if (after.rad * kGain > before_rad) return;
     Complain(Role::kRotationVector,
              "it looks as if the rotation vectors are in degrees",

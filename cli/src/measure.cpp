@@ -42,7 +42,8 @@ MeasurementKind KindOf(const std::string& word) {
   for (const MeasurementKind kind : {MeasurementKind::kHeight,
                                      MeasurementKind::kDistance,
                                      MeasurementKind::kPosition,
-                                     MeasurementKind::kPose}) {
+                                     MeasurementKind::kPose,
+                                     MeasurementKind::kRelative}) {
     if (calibration::Name(kind) == word) return kind;
   }
   return MeasurementKind::kPosition;  // the parser lets no other word through
@@ -188,9 +189,10 @@ void AddInstrumentOptions(CLI::App& command, Session& session, Options& options)
   command.add_option("--points", options.points, "How many rows (60)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
-  session.Choices(command.add_option("--kind", options.kind, "position, pose, height or distance")
-                      ->type_name("KIND"),
-                  {"position", "pose", "height", "distance"});
+  session.Choices(
+      command.add_option("--kind", options.kind, "position, pose, height, distance or relative")
+          ->type_name("KIND"),
+      {"position", "pose", "height", "distance", "relative"});
   session.Choices(
       command.add_option("--components", options.components, "Of a position: xyz, xy, z")
           ->type_name("XYZ"),

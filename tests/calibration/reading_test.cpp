@@ -273,7 +273,7 @@ m.csv:6:10: error: 'X' is empty, but the row is a measurement [E0411]
                 R"(m.csv:2:1: error: the row may be of more than one kind [E0416]
  2 | 1,2,3,0,1,3,,,,,,,,
    | ^~~~~~~~~~~~~~~~~~~
-  help: name it in a column 'kind': height, distance, position or pose
+  help: name it in a column 'kind': height, distance, position, pose, ball_bar, plane, hole or relative
 m.csv:3:1: error: the row gives its orientation twice [E0411]
  3 | 1,2,3,0,1,,0,0,0,0,0,0,2,3
    | ^~~~~~~~~~~~~~~~~~~~~~~~~~

@@ -3,6 +3,7 @@
 #include "residuals.hpp"
 
 #include "machines.hpp"
+#include "pose_worker.hpp"
 
 #include <random>
 
@@ -14,32 +15,56 @@
 namespace kompono::calibration {
 namespace {
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using testing::Good;
 using testing::MachineOf;
 
-/// |J - central difference| relative to the column's size.
-double JacobianError(const RowModel& row,
-                     const Eigen::VectorXd& theta,
-                     const std::vector<int>& free,
-                     const RowMajorMatrix& J) {
-  double worst = 0.0;
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const double step = 1e-4;
-    Eigen::VectorXd shifted = theta;
-    shifted[free[j]] += step;
-    const Eigen::VectorXd plus = row.Whitened(row.Predict(shifted, false)).value;
-    shifted[free[j]] -= 2.0 * step;
-    const Eigen::VectorXd minus = row.Whitened(row.Predict(shifted, false)).value;
-    const Eigen::VectorXd difference = (plus - minus) / (2.0 * step);
-    const Eigen::VectorXd column = J.col(static_cast<Eigen::Index>(j));
-    const double size = std::max(1.0, difference.norm());
-    worst = std::max(worst, (difference - column).norm() / size);
+/// Fixtures that a kind of row needs, none of them known, all of them away from simple places.
+std::vector<Fixture> FixturesFor(MeasurementKind kind) {
+  std::vector<Fixture> fixtures{
+      {.kind = FixtureKind::kTarget, .name = "T", .value = {40.0, -30.0, 55.0}, .known = false}};
+  if (kind == MeasurementKind::kBallBar) {
+    fixtures.push_back(
+        {.kind = FixtureKind::kCentre, .name = "C", .value = {300.0, 50.0, 700.0}, .known = false});
+  } else if (kind == MeasurementKind::kPlane) {
+    fixtures.push_back({.kind = FixtureKind::kPlane,
+                        .name = "P",
+                        .value = {0.02, -0.03, 400.0},
+                        .normal = Eigen::Vector3d(0.2, 0.3, 0.9).normalized(),
+                        .known = false});
+  } else if (kind == MeasurementKind::kHole) {
+    fixtures.push_back(
+        {.kind = FixtureKind::kSheet, .name = "S", .value = {10.0, -20.0, 0.3}, .known = false});
   }
-  return worst;
+  return fixtures;
 }
 
-class RowJacobian : public ::testing::TestWithParam<MeasurementKind> {};
+class RowJacobian : public ::testing::TestWithParam<MeasurementKind> {
+ protected:
+  /// ρ and its derivatives of a row at θ; coordinates follow.
+  Eigen::VectorXd Rho(PoseWorker& worker, PoseRow& row, const Eigen::VectorXd& theta) {
+    worker.SetGeometry(theta);
+    EXPECT_TRUE(worker.Linearise(&row, true, false));
+    return worker.rho();
+  }
+
+  /// Largest difference to central differences, relative to each column's length or to 1.
+  double Error(PoseWorker& worker,
+               PoseRow& row,
+               const Eigen::VectorXd& theta,
+               const Eigen::MatrixXd& J) {
+    double worst = 0.0;
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      const double step = 1e-4;
+      Eigen::VectorXd shifted = theta;
+      shifted[i] += step;
+      const Eigen::VectorXd plus = Rho(worker, row, shifted);
+      shifted[i] -= 2.0 * step;
+      const Eigen::VectorXd difference = (plus - Rho(worker, row, shifted)) / (2.0 * step);
+      worst = std::max(worst, (difference - J.col(i)).norm() / std::max(1.0, difference.norm()));
+    }
+    return worst;
+  }
+};
 
 TEST_P(RowJacobian, AgreesWithDifferencesAndAFlippedSignIsNoticed) {
   const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
@@ -47,6 +72,7 @@ TEST_P(RowJacobian, AgreesWithDifferencesAndAFlippedSignIsNoticed) {
   options.count = 4;
   options.seed = 7;
   options.kind = GetParam();
+  options.fixtures = FixturesFor(GetParam());
   options.region = {{"struts.X", {-80, 80}},
                     {"struts.Y", {-80, 80}},
                     {"struts.Z", {850, 950}},
@@ -55,19 +81,51 @@ TEST_P(RowJacobian, AgreesWithDifferencesAndAFlippedSignIsNoticed) {
                     {"struts.C", {-0.1, 0.1}}};
   const Eigen::VectorXd truth = ManufacturedGeometry(machine, 3, 20.0);
   const MeasurementSet set = Good(Simulate(machine, machine, truth, options));
+  const Eigen::VectorXd theta = AllNominal(machine, set);
   std::vector<int> free;
-  for (std::size_t i = 0; i < machine.parameters().size(); ++i) free.push_back(static_cast<int>(i));
-  const Eigen::VectorXd scale = Eigen::VectorXd::Ones(machine.nominal().size());
+  for (int i = 0; i < theta.size(); ++i) free.push_back(i);
+  PoseWorker worker(machine, set, free, Eigen::VectorXd::Zero(6));
   for (const Measurement& measurement : set.measurements) {
-    RowModel row(machine, measurement, 1.0, 0.01);
-    ASSERT_TRUE(row.FindStart(machine.nominal(), nullptr).ok());
-    RowMajorMatrix J(row.size(), machine.nominal().size());
-    row.Jacobian(row.Predict(machine.nominal(), true), free, scale, J);
-    EXPECT_LT(JacobianError(row, machine.nominal(), free, J), 2e-5);
+    PoseRow row{.measurement = &measurement, .sigma_mm = 1.0, .sigma_rad = 0.01};
+    worker.SetGeometry(theta);
+    ASSERT_EQ(worker.FindStart(theta, nullptr, &row), kinematics::SolveStatus::kConverged);
+    // The first pass moves the coordinates to where they belong, the second differentiates there.
+    Rho(worker, row, theta);
+    Rho(worker, row, theta);
+    Eigen::MatrixXd J = worker.jacobian().topRows(measurement.Numbers());
+    EXPECT_LT(Error(worker, row, theta, J), 2e-5);
     const int joint = machine.FindParameter("struts.base[2].x");
     J.col(joint) *= -1.0;
-    EXPECT_GT(JacobianError(row, machine.nominal(), free, J), 1e-3)
-        << "the check must notice a wrong sign";
+    EXPECT_GT(Error(worker, row, theta, J), 1e-3) << "the check must notice a wrong sign";
+  }
+}
+
+TEST_P(RowJacobian, IsOfTheErrorsThatTheForwardProblemGives) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  SimulateOptions options;
+  options.count = 3;
+  options.kind = GetParam();
+  options.fixtures = FixturesFor(GetParam());
+  options.region = {{"struts.X", {-80, 80}},
+                    {"struts.Y", {-80, 80}},
+                    {"struts.Z", {850, 950}},
+                    {"struts.A", {-0.1, 0.1}},
+                    {"struts.B", {-0.1, 0.1}},
+                    {"struts.C", {0, 0.1}}};
+  const Eigen::VectorXd truth = ManufacturedGeometry(machine, 5, 20.0);
+  const MeasurementSet set = Good(Simulate(machine, machine, truth, options));
+  const Eigen::VectorXd theta = AllNominal(machine, set);
+  const FixtureValues fixtures{.fixtures = &set.fixtures,
+                               .value = theta.data() + machine.parameters().size()};
+  PoseWorker worker(machine, set, {0}, Eigen::VectorXd::Zero(6));
+  for (const Measurement& measurement : set.measurements) {
+    PoseRow row{.measurement = &measurement, .sigma_mm = 1.0, .sigma_rad = 1.0};
+    worker.SetGeometry(theta);
+    ASSERT_EQ(worker.FindStart(theta, nullptr, &row), kinematics::SolveStatus::kConverged);
+    const Eigen::VectorXd rho = Rho(worker, row, theta);
+    RowModel model(machine, measurement, 1.0, 1.0);
+    const Eigen::VectorXd slow = model.Errors(model.FindStart(theta, nullptr), fixtures).value;
+    EXPECT_LT((rho - slow).norm(), 1e-8);
   }
 }
 
@@ -76,7 +134,11 @@ INSTANTIATE_TEST_SUITE_P(Kinds,
                          ::testing::Values(MeasurementKind::kHeight,
                                            MeasurementKind::kDistance,
                                            MeasurementKind::kPosition,
-                                           MeasurementKind::kPose),
+                                           MeasurementKind::kPose,
+                                           MeasurementKind::kBallBar,
+                                           MeasurementKind::kPlane,
+                                           MeasurementKind::kHole,
+                                           MeasurementKind::kRelative),
                          [](const auto& kind) { return std::string(Name(kind.param)); });
 
 TEST(Residuals, ArePredictedMinusMeasured) {

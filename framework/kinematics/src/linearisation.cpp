@@ -398,6 +398,10 @@ void Linearisation::SetGeometry(const VectorXd& theta) {
 bool Linearisation::At(const Eigen::Ref<const VectorXd>& z, Depth depth) {
   return workspace_->At(z, depth);
 }
+bool Linearisation::PoseAt(const Eigen::Ref<const VectorXd>& z) {
+  workspace_->z_now = z;
+  return workspace_->Chain(workspace_->z_now, Depth::kByCoordinates);
+}
 const Pose<double>& Linearisation::X_WT() const {
   return workspace_->X_WT;
 }

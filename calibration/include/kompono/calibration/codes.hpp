@@ -31,6 +31,8 @@ inline constexpr CodeTitle kWrongScale{"E0415",
 inline constexpr CodeTitle kUnclearKind{"E0416", "row of an unclear kind"};
 inline constexpr CodeTitle kIgnoredColumns{"N0417", "columns that are not used"};
 inline constexpr CodeTitle kKlipperRun{"N0418", "delta run of Klipper"};
+inline constexpr CodeTitle kTwoPlaces{"E0419", "fixture that is said to be in two places"};
+inline constexpr CodeTitle kNoFixture{"E0420", "row without the fixture that its kind needs"};
 inline constexpr CodeTitle kNotJson{"E0421", "not a JSON object"};
 inline constexpr CodeTitle kRunMember{"E0422", "missing or wrong member of a run"};
 inline constexpr CodeTitle kNotThreeTowers{"E0424", "machine without three drives for a delta run"};

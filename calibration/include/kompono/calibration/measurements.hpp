@@ -23,19 +23,44 @@ enum class MeasurementKind {
   kDistance,  ///< between the tool points at two sets of readings: ball-bar, calliper
   kPosition,  ///< x, y, z of the tool point, or some of them: tracker, holes in a sheet
   kPose,      ///< position and orientation
+  kBallBar,   ///< distance from the target to a centre that stands still in the datum
+  kPlane,     ///< height of the target above a plane: touch probe on a face
+  kHole,      ///< x and y of the jet in the coordinates of a sheet that lies somewhere on the table
+  kRelative,  ///< pose at the second readings as seen from the tool at the first
 };
 [[nodiscard]] std::string_view Name(MeasurementKind kind);
+
+/// What belongs to the instrument and not to the machine: where a reflector sits on the tool, where
+/// a ball-bar's socket stands, how a probed face lies, where a sheet was put. Three numbers each;
+/// those that are not known are identified with the geometry.
+enum class FixtureKind {
+  kTarget,  ///< x, y, z of the target in the tool frame, mm
+  kCentre,  ///< x, y, z in the datum, mm
+  kPlane,   ///< two tilts of the normal (rad) and the offset along it (mm)
+  kSheet,   ///< x, y of the sheet's origin in the datum (mm) and its turn about z (rad)
+};
+[[nodiscard]] std::string_view Name(FixtureKind kind);
+
+struct Fixture {
+  FixtureKind kind = FixtureKind::kTarget;
+  std::string name;                                   ///< "A": its numbers are "centre.A.x", ...
+  std::array<double, 3> value{};                      ///< start value where not known
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of a plane without tilts
+  bool known = true;
+};
 
 /// One row. mm, rad.
 struct Measurement {
   MeasurementKind kind = MeasurementKind::kPosition;
   Eigen::VectorXd readings;                            ///< of all drives, in the machine's order
   Eigen::VectorXd second_readings;                     ///< of a distance, else empty
-  double value_mm = 0.0;                               ///< height or distance
+  double value_mm = 0.0;                               ///< height, distance, ball-bar or plane
   std::array<std::optional<double>, 3> position_mm;    ///< position and pose
   Eigen::Matrix3d R_WT = Eigen::Matrix3d::Identity();  ///< pose
   std::optional<double> sigma_mm;                      ///< standard deviation of each length
   std::optional<double> sigma_rad;  ///< standard deviation of each component of the rotation vector
+  int target = -1;                  ///< into the set's fixtures; -1: the tool point itself
+  int fixture = -1;                 ///< centre, plane or sheet
   bool held_out = false;            ///< not used in the fit, only to judge it
   int row = 0;                      ///< counted from 1 in the file's data rows
   int line = 0;                     ///< in `MeasurementSet::text`; 0 if there is no text
@@ -48,6 +73,7 @@ struct MeasurementSet {
   std::string file;  ///< as the user named it
   std::string text;  ///< for complaints about single rows
   std::vector<Measurement> measurements;
+  std::vector<Fixture> fixtures;
   /// What the format itself says may be fitted; empty if it says nothing.
   std::vector<std::string> suggested_free;
   std::string origin;  ///< "klipper_delta" or empty
@@ -56,6 +82,14 @@ struct MeasurementSet {
 
   [[nodiscard]] std::size_t Count(bool held_out) const;
 };
+
+/// The machine's numbers and behind them three for every fixture: "target.A.x", "centre.A.y",
+/// "plane.A.tilt_1", "plane.A.offset", "sheet.A.c". Of fixtures the unknown are identifiable.
+[[nodiscard]] std::vector<kinematics::Parameter> AllParameters(const kinematics::Machine& machine,
+                                                               const MeasurementSet& set);
+/// Their values in the layout and in the set.
+[[nodiscard]] Eigen::VectorXd AllNominal(const kinematics::Machine& machine,
+                                         const MeasurementSet& set);
 
 struct ReadOptions {
   /// Compares with what the nominal machine predicts and refuses data that fit far better after a

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -23,7 +24,10 @@ struct SimulateOptions {
   MeasurementKind kind = MeasurementKind::kPosition;
   std::array<bool, 3> components{true, true, true};  ///< of a position: x, y, z
   double sigma_mm = 0.0;                             ///< noise on each length
-  double sigma_rad = 0.0;               ///< noise on each component of the rotation vector
+  double sigma_rad = 0.0;  ///< noise on each component of the rotation vector
+  /// What the instrument needs of itself; rows take targets and centres, planes or sheets in turn.
+  /// Fixtures that are not known keep their true values here and are unknown in the result.
+  std::vector<Fixture> fixtures;
   bool held_out_without_noise = false;  ///< to judge against the truth itself
   /// Coordinate name -> lower, upper (mm, rad); over the ranges of the layout.
   std::map<std::string, std::array<double, 2>> region;

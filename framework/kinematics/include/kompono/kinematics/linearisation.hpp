@@ -35,6 +35,9 @@ class Linearisation {
   /// must not be used then.
   [[nodiscard]] bool At(const Eigen::Ref<const VectorXd>& z, Depth depth);
 
+  /// The tool's pose and its derivatives by the coordinates only; readings keep what they were.
+  [[nodiscard]] bool PoseAt(const Eigen::Ref<const VectorXd>& z);
+
   // Results of the last At(); derivatives as deep as was asked for.
   [[nodiscard]] const Pose<double>& X_WT() const;
   [[nodiscard]] const VectorXd& readings() const;
