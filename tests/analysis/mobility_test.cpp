@@ -79,8 +79,9 @@ TEST(Mobility, TableNamesEveryMechanismThatShips) {
   for (const std::string& module : counted)
     implemented.insert(tests::ShippedRegistry().Find(module)->implementation);
   for (const auto& module : tests::ShippedRegistry().modules()) {
-    if (module.kind == plugin::ModuleKind::kMechanism && module.implementation == module.id)
+    if (module.kind == plugin::ModuleKind::kMechanism && module.implementation == module.id) {
       EXPECT_TRUE(implemented.contains(module.id)) << module.id;
+    }
   }
 }
 
