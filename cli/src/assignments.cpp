@@ -29,7 +29,7 @@ std::string_view ShortName(std::string_view name) {
 }  // namespace
 
 Argument::Argument(std::string option, const std::vector<std::string>& uses)
-    : option_(std::move(option)), text_(Joined(uses, ",")) {}
+    : option_(std::move(option)), text_(Joined(uses, ",")), given_(!uses.empty()) {}
 
 Diagnostic Argument::Complaint(const CodeTitle& code,
                                std::size_t begin,
@@ -46,7 +46,7 @@ Diagnostic Argument::Complaint(const CodeTitle& code,
 std::vector<Assignment> Argument::Split(Diagnostics& problems) const {
   std::vector<Assignment> out;
   std::size_t begin = 0;
-  while (begin <= text_.size()) {
+  while (given_ && begin <= text_.size()) {
     const std::size_t end = std::min(text_.find(',', begin), text_.size());
     const std::string_view piece = std::string_view(text_).substr(begin, end - begin);
     const std::size_t equals = piece.find('=');

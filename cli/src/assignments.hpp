@@ -31,7 +31,7 @@ class Argument {
   [[nodiscard]] const std::string& option() const { return option_; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
-  /// The pieces between the commas; E0609 for those without '='.
+  /// The pieces between the commas, none if the option was not given; E0609 for those without '='.
   [[nodiscard]] std::vector<Assignment> Split(Diagnostics& problems) const;
 
   /// A complaint about `length` bytes of the text.
@@ -54,6 +54,7 @@ class Argument {
  private:
   std::string option_;  ///< "--pose"
   std::string text_;
+  bool given_ = false;
 };
 
 /// What a name may stand for: `drive.q1`, or `q1` if only one block has such a thing, in either

@@ -149,9 +149,18 @@ TEST_F(Calibrate, ExistingFilesAreKeptAndNoWorkIsLostForThem) {
 
 TEST_F(Calibrate, SeveralFilesAreOneFit) {
   Measurements("p.csv");
-  ASSERT_EQ(
-      Run({"measure", lambda_, "--set", "drive.L1=1200.12", "--points", "10", "-o", "q.csv"}).code,
-      0);
+  ASSERT_EQ(Run({"measure",
+                 lambda_,
+                 "--set",
+                 "drive.L1=1200.12,open_base.x=501.5,open_base.y=599.25",
+                 "--sigma-mm",
+                 "0.005",
+                 "--points",
+                 "10",
+                 "-o",
+                 "q.csv"})
+                .code,
+            0);
   const nlohmann::json report = Json({"calibrate", lambda_, "p.csv", "q.csv"});
   EXPECT_EQ(report["rows_fitted"], 70);
   EXPECT_EQ(report["measurements"].size(), 2U);

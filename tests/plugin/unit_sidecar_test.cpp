@@ -2,6 +2,7 @@
 // What sidecars say of units: words for capabilities, states, and the parameter that counts them.
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -47,10 +48,11 @@ plugin.toml:11:47: error: 'many_tools' is given twice [E0225]
 TEST(Sidecar, PageExplainsEveryWordForACapability) {
   std::ifstream in(std::string(KOMPONO_SOURCE_DIR) + "/docs/plugins.md");
   const std::string page(std::istreambuf_iterator<char>(in), {});
-  for (const CapabilityWord& word : kCapabilityWords)
-    EXPECT_THAT(page,
-                testing::HasSubstr("| `" + std::string(word.word) + "` | " +
-                                   std::string(word.meaning) + " |"));
+  for (const CapabilityWord& word : kCapabilityWords) {
+    std::ostringstream row;
+    row << "| `" << word.word << "` | " << word.meaning << " |";
+    EXPECT_THAT(page, testing::HasSubstr(row.str()));
+  }
 }
 
 TEST(Sidecar, StatesAreCountedByAPlainNumber) {
