@@ -46,7 +46,7 @@ plugin.toml:11:47: error: 'many_tools' is given twice [E0225]
 }
 
 TEST(Sidecar, PageExplainsEveryWordForACapability) {
-  std::ifstream in(std::string(KOMPONO_SOURCE_DIR) + "/docs/plugins.md");
+  std::ifstream in(KOMPONO_SOURCE_DIR "/docs/plugins.md");
   const std::string page(std::istreambuf_iterator<char>(in), {});
   for (const CapabilityWord& word : kCapabilityWords) {
     std::ostringstream row;
