@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 
@@ -117,8 +118,10 @@ bool ExpectJudged(const std::string& text) {
   const std::size_t step = 1 + numbers.size() / 4;
   for (std::size_t i = text.size() % step; i < numbers.size(); i += step) {
     const Number& number = numbers[i];
-    const Replacement change{
-        .parameter = number.name, .value = number.value * 1.0001, .sigma = 1e-3};
+    const bool whole = number.pure && number.value == std::round(number.value);  // a count
+    const Replacement change{.parameter = number.name,
+                             .value = whole ? number.value : number.value * 1.0001,
+                             .sigma = 1e-3};
     const auto rewritten = ReplaceNumbers(*layout, ShippedRegistry(), {change}, "mutation");
     EXPECT_TRUE(rewritten) << RenderAll(rewritten.error(), {}) << number.name << " of\n" << text;
     if (!rewritten) break;

@@ -144,11 +144,11 @@ class ForwardSolver {
     if (Equations::kWorkingModes && !OnWorkingMode(x, q)) {
       return plugin::ForwardOutcome::kOtherMode;
     }
+    if (IsShort(x_start, x, q)) return plugin::ForwardOutcome::kProven;
     const Fold<Equations> fold(equations_, x, q);
     const double gone = fold.Distance(x_start, x);
     Vector<double> other{};
-    if (gone > kShort * fold.size() &&
-        std::abs(fold.Determinant()) < kNearSingular * std::abs(first_det) &&
+    if (std::abs(fold.Determinant()) < kNearSingular * std::abs(first_det) &&
         fold.Cross(x, other) && fold.Distance(x, other) < gone &&
         (limits.lower.empty() ? fold.Distance(x_start, other) < kAsFar * gone
                               : limits.Hold(other))) {
@@ -158,6 +158,19 @@ class ForwardSolver {
   }
 
  private:
+  /// A step so small that a second pose on the way is out of the question.
+  [[nodiscard]] static bool IsShort(const Vector<double>& from,
+                                    const Vector<double>& to,
+                                    const DriveVector<double>& q) {
+    double size = 0.0;
+    for (const double drive : q) size = std::max(size, std::abs(drive));
+    for (std::size_t i = 0; i < kSize; ++i) {
+      const double limit = kShort * (IsRotaryLetter(Equations::kLetters[i]) ? 1.0 : size);
+      if (std::abs(to[i] - from[i]) > limit) return false;
+    }
+    return true;
+  }
+
   /// Closure does not tell the working modes apart (the two carriages a strut reaches from one
   /// joint), the inverse kinematics does.
   [[nodiscard]] bool OnWorkingMode(const Vector<double>& x, const DriveVector<double>& q) const {
