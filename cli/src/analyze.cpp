@@ -56,11 +56,6 @@ void OnInterrupt(int /*signal*/) {
   std::signal(SIGINT, SIG_DFL);
 }
 
-/// The pieces of an option, none if it was not given.
-std::vector<Assignment> Pieces(const Argument& argument, Diagnostics& problems) {
-  return argument.text().empty() ? std::vector<Assignment>() : argument.Split(problems);
-}
-
 NameTable CoordinateNames(const Machine& machine) {
   std::vector<std::string> names;
   for (const kinematics::Coordinate& coordinate : machine.coordinates())
@@ -84,7 +79,7 @@ void ReadSpans(const Machine& machine,
   }
   const Argument region("--region", options.region);
   std::vector<bool> limited(table.names().size(), false);
-  for (const Assignment& assignment : Pieces(region, problems)) {
+  for (const Assignment& assignment : region.Split(problems)) {
     const auto index = table.Find(region, assignment, limited, problems);
     const auto range = region.Range(assignment, problems);
     if (!index || !range) continue;
@@ -123,14 +118,13 @@ void ReadHeld(const Machine& machine,
               Diagnostics& problems) {
   const NameTable table = CoordinateNames(machine);
   task.at = machine.home();
-  std::vector<std::optional<double>> numbers;
-  if (!options.at.empty()) numbers = ReadNumbers(Argument("--at", options.at), table, problems);
+  const auto numbers = ReadNumbers(Argument("--at", options.at), table, problems);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i])
       task.at[static_cast<Eigen::Index>(i)] = Inward(*numbers[i], machine.coordinates()[i].rotary);
   }
   const Argument slice("--slice", options.slice);
-  for (const Assignment& assignment : Pieces(slice, problems)) {
+  for (const Assignment& assignment : slice.Split(problems)) {
     std::vector<bool> taken(table.names().size(), false);  // many slices of one coordinate
     const auto index = table.Find(slice, assignment, taken, problems);
     const auto number = slice.Number(assignment, problems);
@@ -142,7 +136,7 @@ void ReadHeld(const Machine& machine,
 
 void ReadLimits(const Options& options, AnalysisTask& task, Diagnostics& problems) {
   const Argument joint("--joint", options.joint);
-  for (const Assignment& assignment : Pieces(joint, problems)) {
+  for (const Assignment& assignment : joint.Split(problems)) {
     const auto number = joint.Number(assignment, problems);
     if (number) task.limits.swings.push_back({assignment.name, *number / kDegPerRad});
   }

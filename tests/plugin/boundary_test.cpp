@@ -154,5 +154,34 @@ TEST(Boundary, MatcherNoticesAWrongNumber) {
   EXPECT_NONFATAL_FAILURE(ExpectSame(answers.batch, wrong.batch), "");
 }
 
+/// The variable for one test.
+class LevelAllowed {
+ public:
+  explicit LevelAllowed(const char* level) { setenv("KOMPONO_X86_LEVEL", level, 1); }
+  LevelAllowed(const LevelAllowed&) = delete;
+  LevelAllowed& operator=(const LevelAllowed&) = delete;
+  ~LevelAllowed() { unsetenv("KOMPONO_X86_LEVEL"); }
+};
+
+TEST(ProcessorLevel, TheBuildForTheBestLevelThatRunsIsOpened) {
+  const PluginFolder folder;
+  const std::string sidecar = std::string(kSlideSidecar).append(kNoseModule);
+  const std::filesystem::path better =
+      folder.Add("slide", sidecar, "libslide.so", "libslide.so") / "x86-64-v3";
+  std::filesystem::create_directory(better);
+  std::ofstream(better / "libslide.so") << "no library, so that opening it is noticed";
+  {
+    const LevelAllowed none("x86-64");
+    EXPECT_TRUE(folder.Discover().CreateMechanism("slide"))
+        << "the variable forbids the better one";
+  }
+  const LevelAllowed wide("x86-64-v3");
+  const auto made = folder.Discover().CreateMechanism("slide");
+  EXPECT_EQ(made.has_value(), !ThisProcessorRunsTheWideBuild());
+  if (!made) {
+    EXPECT_THAT(made.error().file, testing::EndsWith("slide/x86-64-v3/libslide.so"));
+  }
+}
+
 }  // namespace
 }  // namespace kompono::plugin

@@ -9,32 +9,6 @@ namespace {
 
 constexpr Interval kUnknown{0.0, 1.0};  ///< a condition that holds in part of the box
 
-constexpr int kFirstUnary = KOMPONO_NEGATE;
-
-/// How many operands an operation has; -1: no operation.
-int OperandsOf(std::int32_t operation) {
-  switch (operation) {
-    case KOMPONO_CONSTANT:
-      return 0;
-    case KOMPONO_VARIABLE:
-      return 1;
-    case KOMPONO_ADD:
-    case KOMPONO_SUBTRACT:
-    case KOMPONO_MULTIPLY:
-    case KOMPONO_DIVIDE:
-    case KOMPONO_ATAN2:
-    case KOMPONO_LESS:
-    case KOMPONO_LESS_EQUAL:
-    case KOMPONO_AND:
-    case KOMPONO_OR:
-      return 2;
-    case KOMPONO_SELECT:
-      return 3;
-    default:
-      return operation >= kFirstUnary && operation <= KOMPONO_NOT ? 1 : -1;
-  }
-}
-
 Interval LessThan(const Interval& a, const Interval& b, bool or_equal) {
   if (or_equal ? a.upper <= b.lower : a.upper < b.lower) return Interval(1.0);
   if (or_equal ? a.lower > b.upper : a.lower >= b.upper) return Interval(0.0);
@@ -208,7 +182,7 @@ bool FormulaTape::Import(std::span<const KomponoExpressionNode> nodes,
   std::vector<Slot> slot(nodes.size(), -1);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const KomponoExpressionNode& node = nodes[i];
-    const int operands = OperandsOf(node.operation);
+    const int operands = KomponoOperandCount(node.operation);
     if (operands < 0) return false;
     if (node.operation == KOMPONO_CONSTANT) {
       slot[i] = Constant(node.value);

@@ -12,24 +12,6 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr double kSamePlace = 1e-9;  ///< of the mechanism's size
 
-std::size_t RowsOf(const plugin::MechanismShape& shape, plugin::Quantity quantity) {
-  switch (quantity) {
-    case plugin::Quantity::kPlatform:
-      return 12;
-    case plugin::Quantity::kDrives:
-    case plugin::Quantity::kReach:
-      return static_cast<std::size_t>(shape.drives);
-    case plugin::Quantity::kClosure:
-      return static_cast<std::size_t>(shape.closures);
-    case plugin::Quantity::kSkeleton:
-      return 3 * static_cast<std::size_t>(shape.points);
-    case plugin::Quantity::kCoordinates:
-    case plugin::Quantity::kHome:
-      break;
-  }
-  return static_cast<std::size_t>(shape.coordinates);
-}
-
 std::span<double> View(RowMajor& matrix) {
   return {matrix.data(), static_cast<std::size_t>(matrix.size())};
 }
@@ -126,7 +108,7 @@ Values ValuesAt(const PoseJudge::Mechanism& mechanism,
                 const VectorXd& x,
                 const VectorXd& q,
                 bool derivatives) {
-  const auto rows = static_cast<Eigen::Index>(RowsOf(mechanism.shape, quantity));
+  const auto rows = static_cast<Eigen::Index>(plugin::RowsOf(mechanism.shape, quantity));
   const bool by_q = derivatives && q.size() > 0;
   RowMajor x_table(derivatives ? rows : 0, mechanism.shape.coordinates);
   RowMajor q_table(by_q ? rows : 0, mechanism.shape.drives);

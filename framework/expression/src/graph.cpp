@@ -33,25 +33,7 @@ constexpr uint32_t kMost = std::numeric_limits<uint32_t>::max();
 }  // namespace
 
 int OperandCount(int32_t operation) {
-  switch (operation) {
-    case KOMPONO_CONSTANT:
-    case KOMPONO_VARIABLE:
-      return 0;
-    case KOMPONO_ADD:
-    case KOMPONO_SUBTRACT:
-    case KOMPONO_MULTIPLY:
-    case KOMPONO_DIVIDE:
-    case KOMPONO_ATAN2:
-    case KOMPONO_LESS:
-    case KOMPONO_LESS_EQUAL:
-    case KOMPONO_AND:
-    case KOMPONO_OR:
-      return 2;
-    case KOMPONO_SELECT:
-      return 3;
-    default:
-      return operation > KOMPONO_VARIABLE && operation < KOMPONO_SELECT ? 1 : -1;
-  }
+  return KomponoOperandCount(operation);
 }
 
 bool GivesCondition(int32_t operation) {

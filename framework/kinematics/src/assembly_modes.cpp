@@ -171,11 +171,7 @@ AssemblyModes Machine::AllForward(const VectorXd& readings, const VectorXd& thet
   AssemblyModes out{.complete = true};
   AssemblyMode first;
   first.coordinates = home();
-  for (const AxisModel& axis : impl_->axes) {
-    if (axis.coordinate < 0) continue;
-    const int sign = layout().axes[static_cast<std::size_t>(axis.axis)].drive.sign;
-    first.coordinates[axis.coordinate] = theta[axis.theta_zero] + sign * readings[axis.drive];
-  }
+  SetAxes(*impl_, readings, theta, first.coordinates);
   out.found.push_back(first);
   for (const MechanismModel& mechanism : impl_->mechanisms) {
     if (mechanism.first_drive < 0) continue;

@@ -148,6 +148,12 @@ struct ScaledJacobian {
                                         const VectorXd& readings,
                                         const VectorXd& theta);
 
+/// The coordinates of the plain axes from their readings.
+void SetAxes(const Machine::Impl& impl,
+             const VectorXd& readings,
+             const VectorXd& theta,
+             VectorXd& z);
+
 [[nodiscard]] Pose<double> PlacementPose(const VectorXd& theta, int first);
 
 /// X_WT with its twists by z and θ; see PoseDerivatives.

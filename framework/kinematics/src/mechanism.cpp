@@ -9,24 +9,6 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-std::size_t RowsOf(const plugin::MechanismShape& shape, plugin::Quantity quantity) {
-  switch (quantity) {
-    case plugin::Quantity::kPlatform:
-      return 12;
-    case plugin::Quantity::kDrives:
-    case plugin::Quantity::kReach:
-      return static_cast<std::size_t>(shape.drives);
-    case plugin::Quantity::kClosure:
-      return static_cast<std::size_t>(shape.closures);
-    case plugin::Quantity::kSkeleton:
-      return 3 * static_cast<std::size_t>(shape.points);
-    case plugin::Quantity::kCoordinates:
-    case plugin::Quantity::kHome:
-      return static_cast<std::size_t>(shape.coordinates);
-  }
-  return 0;
-}
-
 std::span<const double> View(const VectorXd& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
 }
@@ -46,7 +28,7 @@ Evaluation Evaluate(const MechanismModel& mechanism,
                     const VectorXd& theta,
                     Wanted wanted) {
   const plugin::MechanismShape shape = mechanism.code->Shape();
-  const auto rows = static_cast<Eigen::Index>(RowsOf(shape, quantity));
+  const auto rows = static_cast<Eigen::Index>(plugin::RowsOf(shape, quantity));
   Evaluation out;
   out.values.resize(rows);
   RowMajor by_x(wanted.by_coordinates ? rows : 0, shape.coordinates);

@@ -203,6 +203,17 @@ VectorXd DriveCoordinates(const Machine::Impl& impl,
   return q;
 }
 
+void SetAxes(const Machine::Impl& impl,
+             const VectorXd& readings,
+             const VectorXd& theta,
+             VectorXd& z) {
+  for (const AxisModel& axis : impl.axes) {
+    if (axis.coordinate < 0) continue;
+    const int sign = impl.layout().axes[static_cast<std::size_t>(axis.axis)].drive.sign;
+    z[axis.coordinate] = theta[axis.theta_zero] + sign * readings[axis.drive];
+  }
+}
+
 void Machine::DrivesOf(const VectorXd& z,
                        const VectorXd& theta,
                        VectorXd* readings,
@@ -252,11 +263,7 @@ Solution Machine::CoordinatesOf(const VectorXd& readings,
   out.status = SolveStatus::kConverged;
   out.coordinates = start;
   out.drives = readings;
-  for (const AxisModel& axis : impl_->axes) {
-    if (axis.coordinate < 0) continue;
-    const int sign = layout().axes[static_cast<std::size_t>(axis.axis)].drive.sign;
-    out.coordinates[axis.coordinate] = theta[axis.theta_zero] + sign * readings[axis.drive];
-  }
+  SetAxes(*impl_, readings, theta, out.coordinates);
   for (const MechanismModel& mechanism : impl_->mechanisms) {
     if (mechanism.first_drive < 0) continue;
     const layout::Block& block = BlockOf(*impl_, mechanism);

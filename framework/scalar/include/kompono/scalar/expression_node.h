@@ -34,6 +34,29 @@ typedef enum KomponoOperation {
   KOMPONO_SELECT = 23      /* operand[0] is a condition: true -> operand[1], false -> operand[2] */
 } KomponoOperation;
 
+/* How many operands of an operation are nodes; -1: no operation. */
+static inline int KomponoOperandCount(int32_t operation) {
+  switch (operation) {
+    case KOMPONO_CONSTANT:
+    case KOMPONO_VARIABLE:
+      return 0;
+    case KOMPONO_ADD:
+    case KOMPONO_SUBTRACT:
+    case KOMPONO_MULTIPLY:
+    case KOMPONO_DIVIDE:
+    case KOMPONO_ATAN2:
+    case KOMPONO_LESS:
+    case KOMPONO_LESS_EQUAL:
+    case KOMPONO_AND:
+    case KOMPONO_OR:
+      return 2;
+    case KOMPONO_SELECT:
+      return 3;
+    default:
+      return operation > KOMPONO_VARIABLE && operation < KOMPONO_SELECT ? 1 : -1;
+  }
+}
+
 typedef struct KomponoExpressionNode {
   int32_t operation;
   int32_t operand[3]; /* unused ones are -1 */

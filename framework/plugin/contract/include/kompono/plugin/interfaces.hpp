@@ -47,6 +47,25 @@ struct MechanismShape {
   std::int32_t points = 0;
 };
 
+/// How many numbers a quantity has.
+[[nodiscard]] constexpr std::size_t RowsOf(const MechanismShape& shape, Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kPlatform:
+      return 12;
+    case Quantity::kDrives:
+    case Quantity::kReach:
+      return static_cast<std::size_t>(shape.drives);
+    case Quantity::kClosure:
+      return static_cast<std::size_t>(shape.closures);
+    case Quantity::kSkeleton:
+      return 3 * static_cast<std::size_t>(shape.points);
+    case Quantity::kCoordinates:
+    case Quantity::kHome:
+      return static_cast<std::size_t>(shape.coordinates);
+  }
+  return 0;
+}
+
 /// Where a mechanism is evaluated. Spans that a quantity does not read may be empty.
 struct MechanismState {
   std::span<const double> coordinates;  ///< x: mm, rad

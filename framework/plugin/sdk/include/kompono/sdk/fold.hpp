@@ -67,7 +67,6 @@ class Fold {
   }
 
   [[nodiscard]] double Determinant() const { return LinearSystem<double, kSize>(A_).Determinant(); }
-  [[nodiscard]] double size() const { return scale_.size; }
   /// mm
   [[nodiscard]] double Distance(const Vector& a, const Vector& b) const {
     Vector difference = a;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -41,7 +42,7 @@ class MechanismEquations {
     Fill(numbers_);
   }
   /// Before packs are used.
-  void FillPacks() { Fill(packs_); }
+  void FillPacks() { Fill(packs_.emplace()); }
 
   template <class T, std::size_t N>
   void Closure(const std::array<T, N>& x,
@@ -112,11 +113,11 @@ class MechanismEquations {
     if constexpr (std::is_same_v<T, double>) {
       return numbers_.plain;
     } else if constexpr (std::is_same_v<T, Pack>) {
-      return packs_.plain;
+      return packs_->plain;
     } else if constexpr (std::is_same_v<T, Jets<double>>) {
       return numbers_.jets;
     } else {
-      return packs_.jets;
+      return packs_->jets;
     }
   }
 
@@ -124,7 +125,7 @@ class MechanismEquations {
   std::span<const double> parameters_;
   std::span<const double> modes_;
   Geometry<double> numbers_;
-  Geometry<Pack> packs_;
+  std::optional<Geometry<Pack>> packs_;  ///< large: only where there are packs
 };
 
 /// kompono.mechanism/1 Forward. Eight poses go at once; those that do not pass in one go are

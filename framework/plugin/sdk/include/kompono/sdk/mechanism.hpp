@@ -67,14 +67,7 @@ class AutodiffMechanism : public plugin::Mechanism {
     return X_BP;
   }
 
-  [[nodiscard]] plugin::MechanismShape Shape() const noexcept final {
-    return {.coordinates = Nx(),
-            .drives = Nq(),
-            .parameters = Np(),
-            .modes = Nm(),
-            .closures = Derived::kSpec.closures,
-            .points = Derived::kSpec.points};
-  }
+  [[nodiscard]] plugin::MechanismShape Shape() const noexcept final { return ShapeOfSpec(); }
 
   [[nodiscard]] plugin::Status Evaluate(plugin::Quantity quantity,
                                         const plugin::MechanismState& state,
@@ -121,26 +114,20 @@ class AutodiffMechanism : public plugin::Mechanism {
   static constexpr int Nq() { return Derived::kSpec.drives; }
   static constexpr int Np() { return Derived::kSpec.parameters; }
   static constexpr int Nm() { return Derived::kSpec.modes; }
+  static constexpr plugin::MechanismShape ShapeOfSpec() {
+    return {.coordinates = Nx(),
+            .drives = Nq(),
+            .parameters = Np(),
+            .modes = Nm(),
+            .closures = Derived::kSpec.closures,
+            .points = Derived::kSpec.points};
+  }
   static constexpr int kChunk = 8;  ///< derivatives carried in one pass when many are asked for
 
   [[nodiscard]] const Derived& derived() const { return static_cast<const Derived&>(*this); }
 
   static constexpr std::size_t Rows(plugin::Quantity quantity) {
-    switch (quantity) {
-      case plugin::Quantity::kPlatform:
-        return 12;
-      case plugin::Quantity::kDrives:
-      case plugin::Quantity::kReach:
-        return static_cast<std::size_t>(Nq());
-      case plugin::Quantity::kClosure:
-        return static_cast<std::size_t>(Derived::kSpec.closures);
-      case plugin::Quantity::kSkeleton:
-        return 3U * static_cast<std::size_t>(Derived::kSpec.points);
-      case plugin::Quantity::kCoordinates:
-      case plugin::Quantity::kHome:
-        return static_cast<std::size_t>(Nx());
-    }
-    return 0;
+    return plugin::RowsOf(ShapeOfSpec(), quantity);
   }
   static constexpr bool ReadsCoordinates(plugin::Quantity quantity) {
     return quantity != plugin::Quantity::kCoordinates && quantity != plugin::Quantity::kHome;
