@@ -18,6 +18,9 @@
 #include <random>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "kompono/calibration/codes.hpp"
 
@@ -87,6 +90,11 @@ class Identification {
       return false;
     }
     selection_ = std::move(*selection);
+    if (options_.gauge == Gauge::kPrior) {
+      for (std::size_t i = 0; i < selection_.prior.size(); ++i) {
+        if (!selection_.prior[i]) selection_.prior[i] = selection_.scale[static_cast<int>(i)];
+      }
+    }
     report_.free = selection_.free;
     report_.theta_before = options_.start.value_or(machine_.nominal());
     report_.theta_after = report_.theta_before;
@@ -191,11 +199,15 @@ class Identification {
     Keep(fit);
     RankAnalysis analysis = Analyze(fit);
     if (analysis.gauge.cols() > 0 && fit.converged) {
-      // The smallest change among all equally good ones: take the part along the null space out
-      // and converge again with it held at zero.
-      u = fit.u - analysis.gauge * (analysis.gauge.transpose() * fit.u);
       problem.chosen = fitted_;
-      problem.gauge = analysis.gauge;
+      if (options_.gauge == Gauge::kFreeze) {
+        u = Freeze(fit.u, analysis, &problem);
+      } else {
+        // The smallest change among all equally good ones: take the part along the null space out
+        // and converge again with it held at zero.
+        u = fit.u - analysis.gauge * (analysis.gauge.transpose() * fit.u);
+        problem.gauge = analysis.gauge;
+      }
       fit = SolveLeastSquares(problem, u);
       Keep(fit);
       analysis = Analyze(fit);
@@ -203,6 +215,41 @@ class Identification {
     theta_ = selection_.Theta(fit.u.data());
     report_.theta_after = theta_.head(report_.theta_before.size());
     Judge(fit, analysis);
+  }
+
+  /// Chooses one number of every unseen combination to stay at its start; returns the equally good
+  /// point at which they do.
+  Eigen::VectorXd Freeze(const Eigen::VectorXd& u,
+                         const RankAnalysis& analysis,
+                         LeastSquares* problem) {
+    const Eigen::MatrixXd& N = analysis.gauge;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(N.transpose());
+    std::vector<Eigen::Index> rows;
+    problem->gauge = Eigen::MatrixXd::Zero(N.rows(), N.cols());
+    for (Eigen::Index k = 0; k < N.cols(); ++k) {
+      rows.push_back(pivots.colsPermutation().indices()[k]);
+      problem->gauge(rows.back(), k) = 1.0;
+      report_.frozen.push_back(selection_
+                                   .parameters[static_cast<std::size_t>(
+                                       selection_.free[static_cast<std::size_t>(rows.back())])]
+                                   .name);
+    }
+    return u -
+           N * Eigen::MatrixXd(N(rows, Eigen::all)).partialPivLu().solve(Eigen::VectorXd(u(rows)));
+  }
+
+  /// O1 to O5 of the determined part.
+  void Observe(const Eigen::MatrixXd& H) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H, Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd values = eigen.eigenvalues().tail(report_.rank).cwiseMax(0.0).cwiseSqrt();
+    if (values.size() == 0 || values[0] <= 0.0) return;
+    const double largest = values[values.size() - 1];
+    const auto rows = static_cast<double>(std::max(1, report_.rows_fitted));
+    report_.observability = {std::exp(values.array().log().mean()) / std::sqrt(rows),
+                             values[0] / largest,
+                             values[0],
+                             values[0] * values[0] / largest,
+                             1.0 / values.cwiseInverse().sum()};
   }
 
   RobustFit FitOf(const LeastSquares& problem, const Eigen::VectorXd& u, bool near) {
@@ -278,6 +325,8 @@ class Identification {
   void Judge(const struct Fit& fit, const RankAnalysis& analysis) {
     report_.chi_squared = 2.0 * report_.cost_after;
     report_.sigma0 = report_.dof > 0 ? std::sqrt(report_.chi_squared / report_.dof) : 0.0;
+    report_.verdict = Verdict(report_);
+    Observe(fit.H);
     report_.status =
         analysis.gauge.cols() > 0 ? IdentifyStatus::kRankDeficient : IdentifyStatus::kConverged;
     report_.unidentifiable =

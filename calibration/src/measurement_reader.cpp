@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "column_check.hpp"
 #include "columns.hpp"
 #include "fixture_book.hpp"
 #include "klipper_import.hpp"
@@ -433,6 +434,7 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
   }
   if (!complaints.HasErrors() && options.check_units) {
     CheckUnits(machine, set, table.header, columns, complaints);
+    if (!complaints.HasErrors()) CheckColumns(machine, set, table.header, columns, complaints);
   }
   const bool refused = complaints.HasErrors();
   Diagnostics said = complaints.Take();

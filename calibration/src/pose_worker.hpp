@@ -36,8 +36,14 @@ class PoseWorker {
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   [[nodiscard]] const RowErrors& errors() const { return errors_; }
 
+  /// d tool twist / d free at the row's (first) coordinates with its readings kept.
   [[nodiscard]] bool ToolByParameters(PoseRow* row,
                                       Eigen::Matrix<double, 6, Eigen::Dynamic>* twists);
+
+  /// d tool twist / d readings, of the last call of the above.
+  [[nodiscard]] const Eigen::Matrix<double, 6, Eigen::Dynamic>& tool_by_readings() const {
+    return first_.by_readings;
+  }
 
  private:
   using Depth = kinematics::Linearisation::Depth;

@@ -107,6 +107,14 @@ json ToJson(const CalibrationReport& report) {
     out["correlated"].push_back(
         {{"first", pair.first}, {"second", pair.second}, {"correlation", pair.correlation}});
   }
+  out["verdict"] = report.verdict;
+  out["observability"] = report.observability;
+  out["frozen"] = report.frozen;
+  out["groups"] = json::array();
+  for (const GroupEffect& group : report.groups) {
+    out["groups"].push_back(
+        {{"group", group.group}, {"change_mm", group.change_mm}, {"sigma_mm", group.sigma_mm}});
+  }
   out["rows"] = json::array();
   for (const RowResidual& row : report.rows) out["rows"].push_back(Row(row));
   out["diagnostics"] = kompono::ToJson(report.diagnostics);

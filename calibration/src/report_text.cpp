@@ -111,6 +111,18 @@ std::string Summary(const CalibrationReport& report) {
                             ? "; standard deviations were not given, those below are scaled by it"
                             : "");
   }
+  if (!report.verdict.empty()) text += fmt::format("  {}\n", report.verdict);
+  if (report.observability[0] > 0.0) {
+    text += fmt::format("  observability O1 {:.3g}, O2 {:.3g}, O3 {:.3g}, O4 {:.3g}, O5 {:.3g}\n",
+                        report.observability[0],
+                        report.observability[1],
+                        report.observability[2],
+                        report.observability[3],
+                        report.observability[4]);
+  }
+  if (!report.frozen.empty()) {
+    text += fmt::format("  kept at their start: {}\n", fmt::join(report.frozen, ", "));
+  }
   return text;
 }
 
@@ -150,6 +162,12 @@ std::string Parameters(const CalibrationReport& report) {
     text += fmt::format("  predicted deviation of the tool point: {} RMS, {} at most\n",
                         Length(report.tool_sigma_rms_mm),
                         Length(report.tool_sigma_max_mm));
+  }
+  for (const GroupEffect& group : report.groups) {
+    text += fmt::format("  {}: its changes move the tool by {} RMS, known to {}\n",
+                        group.group,
+                        Length(group.change_mm),
+                        Length(group.sigma_mm));
   }
   return text;
 }

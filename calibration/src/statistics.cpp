@@ -19,6 +19,8 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Normal deviates larger than this happen once in 3.5 million.
 constexpr double kSurelyWrongSigmas = 5.0;
 constexpr double kFarFromNominalTolerances = 20.0;
+using Groups = std::vector<std::pair<std::string, std::vector<Eigen::Index>>>;
+
 constexpr std::size_t kMostToolRows = 200;  ///< enough for a root mean square
 
 struct Sums {
@@ -168,6 +170,23 @@ void WarnOfHeldOut(const MeasurementSet& set, CalibrationReport* report) {
   }
 }
 
+/// Free numbers of the machine by what stands before the first dot of their names.
+Groups GroupsOf(const CalibrationReport& report, Eigen::Index own) {
+  Groups groups;
+  for (Eigen::Index i = 0; i < own; ++i) {
+    const std::string& name = report.parameters[static_cast<std::size_t>(i)].name;
+    const std::string group = name.substr(0, name.find('.'));
+    const auto found = std::find_if(
+        groups.begin(), groups.end(), [&group](const auto& g) { return g.first == group; });
+    if (found == groups.end()) {
+      groups.push_back({group, {i}});
+    } else {
+      found->second.push_back(i);
+    }
+  }
+  return groups;
+}
+
 }  // namespace
 
 Diagnostic AboutRow(const MeasurementSet& set,
@@ -236,6 +255,25 @@ void JudgeRows(const MeasurementSet& set,
   AddStatistics(sums, report);
 }
 
+/// What chance says of the errors left.
+std::string Verdict(const CalibrationReport& report) {
+  if (report.dof <= 0) return "no number is left to judge the fit by";
+  if (report.sigma_assumed) {
+    return "no deviations were given, so that the errors left cannot be judged, only compared";
+  }
+  const double tail = ChiSquaredTail(report.chi_squared, report.dof);
+  const std::string figures =
+      fmt::format("chi2 {:.4g} for {} degrees of freedom, probability {:.2g}",
+                  report.chi_squared,
+                  report.dof,
+                  tail);
+  if (tail < 1e-3) return "the errors left are larger than the deviations allow: " + figures;
+  if (tail > 0.999) {
+    return "the errors left are smaller than the deviations say, which are too large: " + figures;
+  }
+  return "the errors left are what the deviations allow: " + figures;
+}
+
 void JudgeTool(const std::vector<std::size_t>& fitted,
                const Eigen::VectorXd& theta,
                PoseRows* poses,
@@ -250,6 +288,8 @@ void JudgeTool(const std::vector<std::size_t>& fitted,
       }));
   const Eigen::MatrixXd covariance = report->covariance.topLeftCorner(own, own);
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists(6, own);
+  const Groups groups = GroupsOf(*report, own);
+  std::vector<GroupEffect> effects(groups.size());
   for (std::size_t i = 0; i < fitted.size(); i += stride) {
     if (!poses->ToolByParameters(theta, fitted[i], &twists)) continue;
     const Eigen::MatrixXd J = twists.topRows<3>();
@@ -257,8 +297,25 @@ void JudgeTool(const std::vector<std::size_t>& fitted,
     sum += square;
     report->tool_sigma_max_mm = std::max(report->tool_sigma_max_mm, std::sqrt(square));
     ++count;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const std::vector<Eigen::Index>& members = groups[g].second;
+      const Eigen::MatrixXd part = J(Eigen::all, members);
+      Eigen::VectorXd change(static_cast<Eigen::Index>(members.size()));
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        change[static_cast<Eigen::Index>(k)] =
+            report->parameters[static_cast<std::size_t>(members[k])].change();
+      }
+      effects[g].change_mm += (part * change).squaredNorm();
+      effects[g].sigma_mm += (part * covariance(members, members)).cwiseProduct(part).sum();
+    }
   }
-  if (count > 0) report->tool_sigma_rms_mm = std::sqrt(sum / count);
+  if (count == 0) return;
+  report->tool_sigma_rms_mm = std::sqrt(sum / count);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    report->groups.push_back({.group = groups[g].first,
+                              .change_mm = std::sqrt(effects[g].change_mm / count),
+                              .sigma_mm = std::sqrt(effects[g].sigma_mm / count)});
+  }
 }
 
 void JudgeParameters(const Selection& selection,
@@ -317,6 +374,22 @@ void WarnOfDoubts(const MeasurementSet& set,
                             report->numbers,
                             selection.size()),
                 "measure more"));
+  }
+  const bool heights_only =
+      std::all_of(set.measurements.begin(), set.measurements.end(), [](const Measurement& m) {
+        return m.kind == MeasurementKind::kHeight;
+      });
+  for (const IdentifiedParameter& parameter : report->parameters) {
+    if (!heights_only || parameter.name.find(".strut") == std::string::npos) continue;
+    report->diagnostics.push_back(
+        Warning(set,
+                codes::kArmsOnHeights.code,
+                fmt::format("{} and the other struts are fitted to heights alone: the heights then "
+                            "fit better and the machine is known worse, for sizes in X and Y are "
+                            "hardly seen",
+                            parameter.name),
+                "lock the struts, or measure distances too; compare held-out errors with --folds"));
+    break;
   }
   WarnOfContradiction(set, report);
   TellRejected(set, report);

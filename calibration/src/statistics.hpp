@@ -43,6 +43,9 @@ void JudgeTool(const std::vector<std::size_t>& fitted,
                PoseRows* poses,
                CalibrationReport* report);
 
+/// What chance says of the errors left, in words.
+[[nodiscard]] std::string Verdict(const CalibrationReport& report);
+
 /// Warnings about a result that can be used but should be looked at.
 void WarnOfDoubts(const MeasurementSet& set, const Selection& selection, CalibrationReport* report);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // kompono calibrate: the real geometry from measurements.
 #include "calibration_files.hpp"
+#include "codes.hpp"
 #include "files.hpp"
 #include "patterns.hpp"
 #include "session.hpp"
@@ -10,6 +11,8 @@
 
 #include <memory>
 
+#include "kompono/calibration/cross_validation.hpp"
+#include "kompono/calibration/html_report.hpp"
 #include "kompono/calibration/identification.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 #include "kompono/calibration/report.hpp"
@@ -41,6 +44,9 @@ struct Options {
   std::string outliers = "auto";
   double drive_sigma_mm = 0.0;
   double drive_sigma_deg = 0.0;
+  std::string gauge = "minimum";
+  std::string html;
+  int folds = 0;
   bool residuals = false;
   bool force = false;
 };
@@ -65,6 +71,8 @@ IdentifyOptions IdentifyOptionsOf(const Machine& machine,
   out.max_iterations = options.max_iterations;
   out.drive_sigma_mm = options.drive_sigma_mm;
   out.drive_sigma_rad = options.drive_sigma_deg / kDegPerRad;
+  if (options.gauge == "freeze") out.gauge = calibration::Gauge::kFreeze;
+  if (options.gauge == "prior") out.gauge = calibration::Gauge::kPrior;
   if (options.outliers == "reject") out.outliers = calibration::Outliers::kReject;
   if (options.outliers == "keep") out.outliers = calibration::Outliers::kKeep;
   return out;
@@ -149,6 +157,33 @@ ExitCode ExitOf(const CalibrationReport& report) {
   return ExitCode::kInternal;
 }
 
+std::string FoldsText(const std::vector<calibration::FoldedError>& folded, int folds) {
+  if (folded.empty()) return "\na fold could not be fitted: too few rows\n";
+  std::string text = fmt::format("\n{} folds: each row judged by a fit without it\n", folds);
+  for (const calibration::FoldedError& e : folded) {
+    const double factor = e.angle ? kDegPerRad : 1.0;
+    text += fmt::format("  {}: {:.4g} {} in sample, {:.4g} {} held out\n",
+                        e.quantity,
+                        e.rms_fitted * factor,
+                        UnitOf(e.angle),
+                        e.rms_held_out * factor,
+                        UnitOf(e.angle));
+  }
+  return text;
+}
+
+ordered_json FoldsJson(const std::vector<calibration::FoldedError>& folded) {
+  ordered_json out = ordered_json::array();
+  for (const calibration::FoldedError& e : folded) {
+    const std::string unit(UnitOf(e.angle));
+    out.push_back({{"quantity", e.quantity},
+                   {"count", e.count},
+                   {"rms_fitted_" + unit, Outward(e.rms_fitted, e.angle)},
+                   {"rms_held_out_" + unit, Outward(e.rms_held_out, e.angle)}});
+  }
+  return out;
+}
+
 /// The files asked for; with what to leave if one cannot be written.
 std::optional<ExitCode> WriteFiles(Session& session,
                                    const Machine& machine,
@@ -160,6 +195,13 @@ std::optional<ExitCode> WriteFiles(Session& session,
     if (const auto failure = WriteFileAside(options.report, document.dump(2) + "\n", options.force))
       return session.Refuse(*failure);
     session.console.Say(options.report + " written");
+  }
+  if (!options.html.empty()) {
+    const std::string page =
+        calibration::RenderHtml(report, fmt::format("{}: {}", options.file, files.set.file));
+    if (const auto failure = WriteFileAside(options.html, page, options.force))
+      return session.Refuse(*failure);
+    session.console.Say(options.html + " written");
   }
   if (options.out.empty() || !report.ok()) return std::nullopt;
   const Parsed<std::string> layout =
@@ -184,6 +226,11 @@ ExitCode Identify(Session& session,
     document["measurements"].push_back({{"file", file.name}, {"sha256", file.sha256}});
   if (!options.out.empty() && report.ok()) document["calibrated_layout"] = options.out;
   std::optional<KlipperComparison> comparison;
+  std::vector<calibration::FoldedError> folded;
+  if (options.folds > 1 && report.ok()) {
+    folded = calibration::CrossValidate(machine, files.set, identify, options.folds);
+    document["folds"] = FoldsJson(folded);
+  }
   if (!options.published.empty() && report.ok()) {
     const auto compared = Compare(machine, files.set, report, identify, options.published);
     if (!compared) return session.Refuse(compared.error());
@@ -192,6 +239,9 @@ ExitCode Identify(Session& session,
   }
   if (!session.json) {
     session.console.Out(calibration::RenderText(report, {.residuals = options.residuals}));
+    if (options.folds > 1 && report.ok()) {
+      session.console.Out(FoldsText(folded, options.folds));
+    }
     if (comparison) session.console.Out(ComparisonText(*comparison));
     session.console.Report(report.diagnostics);  // under --json they stand in the document
   }
@@ -202,7 +252,13 @@ ExitCode Identify(Session& session,
 }
 
 ExitCode Run(Session& session, const Options& options) {
-  for (const std::string& file : {options.out, options.report}) {
+  if (options.file.empty() || options.measurements.empty()) {
+    return session.Refuse(Diagnostic{
+        .code = std::string(codes::kUsage.code),
+        .message = options.file.empty() ? "LAYOUT is required" : "MEASUREMENTS is required",
+        .help = "kompono calibrate LAYOUT MEASUREMENTS..., or kompono calibrate plan LAYOUT"});
+  }
+  for (const std::string& file : {options.out, options.report, options.html}) {
     if (const auto exists = RefuseToOverwrite(file, options.force)) return session.Refuse(*exists);
   }
   ExitCode code = ExitCode::kOk;
@@ -278,21 +334,31 @@ void AddCalibrate(CLI::App& root, Session& session) {
   const auto file = [&](const char* name, std::string& value, const char* text) {
     session.Hint(command->add_option(name, value, text)->type_name("FILE"), ValueHint::Kind::kFile);
   };
-  session.Hint(
-      command->add_option("LAYOUT", options->file, "Layout with the nominal geometry")->required(),
-      ValueHint::Kind::kFile);
-  session.Hint(command
-                   ->add_option("MEASUREMENTS",
-                                options->measurements,
-                                "CSV files; runs of Klipper's deltas are known by their heading")
-                   ->required(),
+  session.Hint(command->add_option("LAYOUT", options->file, "Layout with the nominal geometry"),
                ValueHint::Kind::kFile);
+  session.Hint(
+      command->add_option("MEASUREMENTS",
+                          options->measurements,
+                          "CSV files; runs of Klipper's deltas are known by their heading"),
+      ValueHint::Kind::kFile);
   file("-o,--out", options->out, "Calibrated layout to write");
   AddFitOptions(*command, session, *options);
   file("--published", options->published, "A delta run's description: compare with Klipper's fit");
   file("--report", options->report, "The whole report as JSON, for kompono catalog add --report");
+  file("--html", options->html, "The report as one HTML page with its diagrams");
+  command->add_option("--folds", options->folds, "Judge each row by a fit without it, in N parts")
+      ->type_name("N")
+      ->check(CLI::Range(2, 1000));
+  session.Choices(command
+                      ->add_option("--gauge",
+                                   options->gauge,
+                                   "What settles unseen combinations: minimum, freeze or prior "
+                                   "(minimum)")
+                      ->type_name("HOW"),
+                  {"minimum", "freeze", "prior"});
   command->add_flag("--residuals", options->residuals, "A line for every row");
   command->add_flag("--force", options->force, "Replace files that exist");
+  AddCalibratePlan(*command, session);
   session.OnRun(command, [&session, options] { return Run(session, *options); });
 }
 

@@ -98,6 +98,8 @@ ExitCode Main(int argc, char** argv, Session& session) {
                          AddAnalyze,
                          AddMeasure,
                          AddCalibrate,
+                         AddErrorBudget,
+                         AddCompensate,
                          AddImport,
                          AddExport,
                          AddCatalog,

@@ -77,6 +77,10 @@ void AddSolve(CLI::App& root, Session& session);
 void AddAnalyze(CLI::App& root, Session& session);
 void AddMeasure(CLI::App& root, Session& session);
 void AddCalibrate(CLI::App& root, Session& session);
+/// A subcommand of calibrate.
+void AddCalibratePlan(CLI::App& calibrate, Session& session);
+void AddErrorBudget(CLI::App& root, Session& session);
+void AddCompensate(CLI::App& root, Session& session);
 void AddCatalog(CLI::App& root, Session& session);
 void AddExport(CLI::App& root, Session& session);
 void AddImport(CLI::App& root, Session& session);

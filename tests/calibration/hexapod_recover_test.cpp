@@ -4,6 +4,7 @@
 #include "machines.hpp"
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -179,6 +180,29 @@ TEST(Hexapod, UnknownBaseAndTargetFramesAreFoundTooAndTheirGaugeIsNamed) {
       wandered = std::max(wandered, std::abs(p.change()));
   }
   EXPECT_LT(wandered, 1.5) << "the joints stay where their tolerances want them";
+}
+
+TEST(Hexapod, UnseenCombinationsMayBeFrozenOrGivenPriorsInstead) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  const MeasurementSet set = TrainAndValid(
+      machine, "hexapod_mismatch_train60.csv", "hexapod_mismatch_valid100_noisefree.csv");
+  IdentifyOptions options;
+  options.free = {"struts", "tool.mount"};
+  options.gauge = Gauge::kFreeze;
+  const CalibrationReport frozen = Identify(machine, set, options);
+  ASSERT_EQ(frozen.status, IdentifyStatus::kRankDeficient) << RenderText(frozen);
+  EXPECT_EQ(frozen.frozen.size(), 12U);
+  for (const IdentifiedParameter& p : frozen.parameters) {
+    if (std::find(frozen.frozen.begin(), frozen.frozen.end(), p.name) == frozen.frozen.end()) {
+      continue;
+    }
+    EXPECT_NEAR(p.change(), 0.0, 1e-6) << p.name;
+  }
+  EXPECT_LT(RmsAfter(frozen, "position", true), 3.2e-3);
+  options.gauge = Gauge::kPrior;
+  const CalibrationReport prior = Identify(machine, set, options);
+  ASSERT_EQ(prior.status, IdentifyStatus::kConverged) << RenderText(prior);
+  EXPECT_LT(RmsAfter(prior, "position", true), 3.2e-3);
 }
 
 }  // namespace

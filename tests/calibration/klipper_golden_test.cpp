@@ -3,12 +3,14 @@
 // (layouts/measurements/README.md).
 #include "machines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kompono/calibration/cross_validation.hpp"
 #include "kompono/calibration/identification.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 #include "kompono/calibration/measurements.hpp"
@@ -77,6 +79,33 @@ TEST_P(KlipperRuns, FitWhatKlipperFits) {
   const CalibrationReport report = Identify(*machine_, set_);
   EXPECT_EQ(report.free.size(), run_.distances > 0 ? 9U : 6U);
   EXPECT_EQ(report.rows_fitted, run_.heights + run_.distances);
+}
+
+TEST_P(KlipperRuns, HeldOutErrorsAreReportedAndNotSmallerThanInSample) {
+  const std::vector<FoldedError> folded = CrossValidate(*machine_, set_, {}, 8);
+  ASSERT_FALSE(folded.empty());
+  for (const FoldedError& e : folded) {
+    std::printf("%s: %s %.1f um in sample, %.1f um held out\n",
+                GetParam().c_str(),
+                e.quantity.c_str(),
+                1e3 * e.rms_fitted,
+                1e3 * e.rms_held_out);
+    EXPECT_GT(e.rms_held_out, e.rms_fitted);
+  }
+}
+
+TEST_P(KlipperRuns, FreeingTheArmsOnHeightsAloneIsWarnedOf) {
+  if (run_.distances > 0) return;
+  const auto warned = [](const CalibrationReport& report) {
+    return std::any_of(report.diagnostics.begin(), report.diagnostics.end(), [](const auto& d) {
+      return d.code == "W0462";
+    });
+  };
+  IdentifyOptions arms;
+  arms.free = {
+      "delta.radius", "delta.azimuth[1]", "delta.azimuth[2]", "delta.strut", "delta.*.zero"};
+  EXPECT_TRUE(warned(Identify(*machine_, set_, arms)));
+  EXPECT_FALSE(warned(Identify(*machine_, set_)));
 }
 
 TEST_P(KlipperRuns, AreSolvedWithinTheTimeBudget) {

@@ -35,6 +35,10 @@ inline constexpr CodeTitle kTwoPlaces{"E0419", "fixture that is said to be in tw
 inline constexpr CodeTitle kNoFixture{"E0420", "row without the fixture that its kind needs"};
 inline constexpr CodeTitle kNotJson{"E0421", "not a JSON object"};
 inline constexpr CodeTitle kRunMember{"E0422", "missing or wrong member of a run"};
+inline constexpr CodeTitle kSwapped{"E0423", "columns that look swapped"};
+inline constexpr CodeTitle kNegated{"E0426", "column that looks negated"};
+inline constexpr CodeTitle kFarRow{"W0427", "row far from what the nominal machine predicts"};
+inline constexpr CodeTitle kSameReadings{"W0428", "same readings, other measurement"};
 inline constexpr CodeTitle kNotThreeTowers{"E0424", "machine without three drives for a delta run"};
 inline constexpr CodeTitle kNotADelta{"E0425", "machine that is no linear delta"};
 inline constexpr CodeTitle kUnknownParameter{"E0431", "pattern that names no parameter"};
@@ -46,6 +50,7 @@ inline constexpr CodeTitle kNoRange{"E0441", "coordinate without a range to draw
 inline constexpr CodeTitle kFewPoses{"E0442", "too few poses inside the ranges"};
 inline constexpr CodeTitle kOtherDrives{"E0443", "true machine with other drives"};
 inline constexpr CodeTitle kBadSimulation{"E0444", "simulation option that makes no sense"};
+inline constexpr CodeTitle kNoStiffness{"E0445", "dynamic error without stiffness"};
 inline constexpr CodeTitle kNoPose{"E0451", "row at whose readings the machine has no pose"};
 inline constexpr CodeTitle kTooFew{"E0452", "fewer measured numbers than unknowns"};
 inline constexpr CodeTitle kExactFit{"W0452", "as many measured numbers as unknowns"};
@@ -58,6 +63,7 @@ inline constexpr CodeTitle kAtBound{"W0457", "parameter at its bound"};
 inline constexpr CodeTitle kNotConverged{"E0458", "identification that did not converge"};
 inline constexpr CodeTitle kRejected{"W0460", "row left out of the fit"};
 inline constexpr CodeTitle kTooManyOutliers{"W0461", "too many rows that stand out"};
+inline constexpr CodeTitle kArmsOnHeights{"W0462", "arms fitted to heights alone"};
 inline constexpr CodeTitle kHeldOutWorse{"W0459", "held-out rows that became worse"};
 }  // namespace codes
 

@@ -39,6 +39,13 @@ enum class Outliers {
   kKeep,       ///< plain least squares over all rows
 };
 
+/// How combinations that the measurements cannot see are settled.
+enum class Gauge {
+  kMinimumNorm,  ///< the smallest change, every number in units of its tolerance
+  kFreeze,       ///< one number of each combination stays at its start
+  kPrior,        ///< every number is expected at its nominal value within its tolerance
+};
+
 struct IdentifyOptions {
   /// What may change, as patterns (layout::MatchesPattern): "struts.base[*]", "*.zero",
   /// "open_base". Without: the layout's [calibration] free, or all parameters marked identifiable,
@@ -56,6 +63,7 @@ struct IdentifyOptions {
   double rank_threshold = 1e-9;  ///< relative to the largest singular value, columns of unit length
   double correlation_threshold = 0.95;  ///< pairs above it are reported
   Outliers outliers = Outliers::kAutomatic;
+  Gauge gauge = Gauge::kMinimumNorm;
   /// Deviations of the drive readings themselves. 0: the scales are exact beside the instrument.
   double drive_sigma_mm = 0.0, drive_sigma_rad = 0.0;
   std::optional<Eigen::VectorXd> start;  ///< θ to start from; the layout's if not given
@@ -91,6 +99,13 @@ struct IdentifiedParameter {
   bool at_bound = false;
   bool determined = true;  ///< false: part of a combination that the measurements cannot see
   [[nodiscard]] double change() const { return after - before; }
+};
+
+/// What the identified changes of a group of numbers do at the tool, over the fitted rows.
+struct GroupEffect {
+  std::string group;       ///< "open_base", "struts", "P_z", ...
+  double change_mm = 0.0;  ///< RMS of the tool's motion by the group's changes
+  double sigma_mm = 0.0;   ///< RMS of its predicted deviation by the group's covariance
 };
 
 struct CorrelatedPair {
@@ -134,8 +149,14 @@ struct CalibrationReport {
   bool sigma_assumed = false;  ///< deviations were not given; those of the parameters are scaled by
                                ///< sigma0 instead
   double scaled_condition = 0.0;  ///< of the determined part, columns of unit length
-  double solver_ms = 0.0;         ///< the least-squares solver
-  double total_ms = 0.0;          ///< with statistics, rank and covariance
+  /// Observability of the determined part, every number in units of its tolerance: O1 geometric
+  /// mean of the singular values over sqrt(rows), O2 smallest over largest, O3 smallest, O4
+  /// smallest squared over largest, O5 harmonic mean.
+  std::array<double, 5> observability{};
+  std::string verdict;              ///< what chi² says of the errors left, in words
+  std::vector<std::string> frozen;  ///< kept at their start to settle unseen combinations
+  double solver_ms = 0.0;           ///< the least-squares solver
+  double total_ms = 0.0;            ///< with statistics, rank and covariance
   /// Predicted standard deviation of the tool point over the fitted rows, from the parameters'
   /// covariance: RMS and maximum of the length.
   double tool_sigma_rms_mm = 0.0, tool_sigma_max_mm = 0.0;
@@ -144,6 +165,7 @@ struct CalibrationReport {
   Eigen::MatrixXd covariance;                   ///< of the free ones; mm, rad
   std::vector<IdentifiedParameter> parameters;  ///< the free ones
   std::vector<CorrelatedPair> correlated;
+  std::vector<GroupEffect> groups;
   std::vector<NullDirection> unidentifiable;
   std::vector<ErrorStatistics> statistics;
   std::vector<RowResidual> rows;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CALIBRATION_HTML_REPORT_HPP_
+#define KOMPONO_CALIBRATION_HTML_REPORT_HPP_
+
+#include <string>
+#include <string_view>
+
+#include "kompono/calibration/identification.hpp"
+
+namespace kompono::calibration {
+
+/// One page without outside parts: what was found in words, errors before and after as a table and
+/// as a histogram, every row's error before and after, the numbers with their deviations, and what
+/// cannot be told. `title`: machine and measurements; it is escaped.
+[[nodiscard]] std::string RenderHtml(const CalibrationReport& report, std::string_view title);
+
+}  // namespace kompono::calibration
+
+#endif  // KOMPONO_CALIBRATION_HTML_REPORT_HPP_
