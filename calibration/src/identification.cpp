@@ -240,6 +240,7 @@ class Identification {
 
   /// O1 to O5 of the determined part.
   void Observe(const Eigen::MatrixXd& H) {
+    if (H.size() == 0) return;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H, Eigen::EigenvaluesOnly);
     const Eigen::VectorXd values = eigen.eigenvalues().tail(report_.rank).cwiseMax(0.0).cwiseSqrt();
     if (values.size() == 0 || values[0] <= 0.0) return;
