@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "kompono/calibration/codes.hpp"
+#include "kompono/kinematics/linearisation.hpp"
 
 namespace kompono::calibration {
 namespace {
@@ -29,7 +30,9 @@ constexpr double kUnreached = 1000.0;      ///< mm; what a row without a pose co
 constexpr double kRadianLengthMm = 100.0;
 constexpr double kFarFactor = 10.0;
 
-double Median(std::vector<double> values) {
+using Errors = std::vector<double>;  ///< of rows, mm
+
+double Median(Errors values) {
   if (values.empty()) return std::numeric_limits<double>::infinity();
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -57,7 +60,9 @@ class ColumnCheck {
         header_(header),
         columns_(columns),
         complaints_(complaints),
-        values_(AllNominal(machine, set)) {
+        values_(AllNominal(machine, set)),
+        linear_(machine, {}) {
+    linear_.SetGeometry(machine.nominal());
     const std::size_t stride = set.measurements.size() / kSampleRows + 1;
     for (std::size_t i = 0; i < set.measurements.size(); i += stride) {
       sample_.push_back(&set.measurements[i]);
@@ -66,10 +71,9 @@ class ColumnCheck {
 
   void Run() {
     if (sample_.size() < 4) return;
-    const double before = ForwardError(sample_, {});
-    if (before > kSuspicious) {
-      if (ExplainedByMeasured(before) || ExplainedByReadings(before)) return;
-    }
+    const Errors before = ForwardErrors(sample_, {});
+    if (Median(before) > kSuspicious && ExplainedByMeasured(before)) return;
+    if (ExplainedByReadings(before)) return;
     NameFarRows();
     NameContradictions();
   }
@@ -79,13 +83,13 @@ class ColumnCheck {
     return {.fixtures = &set_.fixtures, .value = values_.data() + machine_.parameters().size()};
   }
 
-  /// Median error of rows after a change, mm.
-  double ForwardError(const std::vector<const Measurement*>& rows,
-                      const std::function<void(Measurement*)>& change) const {
-    std::vector<double> errors;
+  /// Errors of rows after a change, mm.
+  Errors ForwardErrors(const std::vector<const Measurement*>& rows,
+                       const std::function<void(Measurement*)>& change) {
+    Errors errors;
     std::size_t failed = 0;
     for (const Measurement* row : rows) {
-      if (2 * failed > rows.size()) return kUnreached;
+      if (2 * failed > rows.size()) return Errors(rows.size(), kUnreached);
       Measurement changed = *row;
       if (change) change(&changed);
       const RowModel model(machine_, changed, 1.0, 1.0);
@@ -96,24 +100,51 @@ class ColumnCheck {
         continue;
       }
       const RowErrors e = model.Errors(prediction, Fixtures());
-      errors.push_back(e.LengthNorm() + kRadianLengthMm * e.AngleNorm());
+      const double unmet = Unmet(changed.readings, prediction.first.coordinates);
+      errors.push_back(
+          std::min(e.LengthNorm() + kRadianLengthMm * e.AngleNorm() + unmet, kUnreached));
     }
-    return std::min(Median(std::move(errors)), kUnreached);
+    return errors;
   }
 
-  bool TellBest(double before,
+  /// What the readings at the predicted coordinates lack of those given, mm: where squared lengths
+  /// are solved for, a leg's sign does not show in the pose.
+  double Unmet(const Eigen::VectorXd& given, const Eigen::VectorXd& z) {
+    if (!linear_.At(z, kinematics::Linearisation::Depth::kByCoordinates)) return kUnreached;
+    return LengthOf(linear_.readings() - given);
+  }
+
+  /// Of differences between readings, a radian counting kRadianLengthMm.
+  [[nodiscard]] double LengthOf(const Eigen::VectorXd& difference) const {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < difference.size(); ++i) {
+      const bool rotary = machine_.drives()[static_cast<std::size_t>(i)].rotary;
+      sum += std::abs(difference[i]) * (rotary ? kRadianLengthMm : 1.0);
+    }
+    return sum;
+  }
+
+  /// A slip of a column shows in most of the rows; what makes some rows better is no slip of it.
+  static bool Explains(const Errors& before, const Errors& after) {
+    std::size_t better = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) better += after[i] * kGain < before[i] ? 1 : 0;
+    return 3 * better >= 2 * before.size() && Median(after) * kGain < Median(before);
+  }
+
+  /// Names the candidate that makes the errors smallest, if it explains them.
+  bool TellBest(const Errors& before,
                 const std::vector<Candidate>& candidates,
-                const std::vector<const Measurement*>& rows) {
+                const std::function<Errors(const std::function<void(Measurement*)>&)>& errors_of) {
     const Candidate* best = nullptr;
-    double least = before / kGain;
+    double least = std::numeric_limits<double>::infinity();
     for (const Candidate& candidate : candidates) {
-      const double after = ForwardError(rows, candidate.apply);
-      if (after >= least) continue;
-      least = after;
+      const Errors after = errors_of(candidate.apply);
+      if (!Explains(before, after) || Median(after) >= least) continue;
+      least = Median(after);
       best = &candidate;
     }
     if (best == nullptr) return false;
-    Tell(*best, before, least);
+    Tell(*best, Median(before), least);
     return true;
   }
 
@@ -136,7 +167,7 @@ class ColumnCheck {
                       : std::string(header_.cells[static_cast<std::size_t>(column)].text);
   }
 
-  bool ExplainedByMeasured(double before) {
+  bool ExplainedByMeasured(const Errors& before) {
     std::vector<Candidate> candidates;
     const Role role = Role::kPosition;
     for (int i = 0; i < 3; ++i) {
@@ -159,7 +190,8 @@ class ColumnCheck {
       }
     }
     if (columns_.Has(Role::kRotationVector)) AddRotations(&candidates);
-    return TellBest(before, candidates, sample_);
+    return TellBest(
+        before, candidates, [this](const auto& change) { return ForwardErrors(sample_, change); });
   }
 
   static void AddRotations(std::vector<Candidate>* candidates) {
@@ -254,40 +286,34 @@ class ColumnCheck {
 
   /// Where the measured numbers determine the coordinates, the nominal machine says what each drive
   /// should have read; else every candidate needs the forward problem.
-  bool ExplainedByReadings(double before) {
+  bool ExplainedByReadings(const Errors& before) {
     const std::vector<Candidate> candidates = OfReadings();
     const std::vector<std::pair<const Measurement*, Eigen::VectorXd>> expected = Expected();
     if (expected.size() < 4) {
+      if (Median(before) <= kSuspicious) return false;
       std::vector<const Measurement*> few = sample_;
       few.resize(std::min(few.size(), kForwardRows));
-      return TellBest(before, candidates, few);
+      const Errors of_few(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(few.size()));
+      return TellBest(of_few, candidates, [this, &few](const auto& change) {
+        return ForwardErrors(few, change);
+      });
     }
     const auto off = [&](const std::function<void(Measurement*)>& change) {
-      std::vector<double> errors;
-      for (const auto& [row, readings] : expected) {
-        Measurement changed = *row;
-        if (change) change(&changed);
-        double sum = 0.0;
-        for (Eigen::Index i = 0; i < readings.size(); ++i) {
-          const bool rotary = machine_.drives()[static_cast<std::size_t>(i)].rotary;
-          sum += std::abs(changed.readings[i] - readings[i]) * (rotary ? kRadianLengthMm : 1.0);
-        }
-        errors.push_back(sum);
-      }
-      return Median(std::move(errors));
+      Errors errors;
+      for (const auto& [row, readings] : expected) errors.push_back(Off(*row, readings, change));
+      return errors;
     };
-    const double as_given = off({});
-    const Candidate* best = nullptr;
-    double least = as_given / kGain;
-    for (const Candidate& candidate : candidates) {
-      const double after = off(candidate.apply);
-      if (after >= least) continue;
-      least = after;
-      best = &candidate;
-    }
-    if (as_given < kSuspicious || best == nullptr) return false;
-    Tell(*best, as_given, least);
-    return true;
+    const Errors as_given = off({});
+    return Median(as_given) > kSuspicious && TellBest(as_given, candidates, off);
+  }
+
+  /// By how much the readings of a row, changed, are not those expected, mm.
+  [[nodiscard]] double Off(const Measurement& row,
+                           const Eigen::VectorXd& expected,
+                           const std::function<void(Measurement*)>& change) const {
+    Measurement changed = row;
+    if (change) change(&changed);
+    return LengthOf(changed.readings - expected);
   }
 
   [[nodiscard]] std::vector<std::pair<const Measurement*, Eigen::VectorXd>> Expected() const {
@@ -385,6 +411,7 @@ class ColumnCheck {
   const Columns& columns_;
   Complaints& complaints_;
   Eigen::VectorXd values_;
+  kinematics::Linearisation linear_;
   std::vector<const Measurement*> sample_;
 };
 

@@ -92,7 +92,9 @@ class Identification {
     selection_ = std::move(*selection);
     if (options_.gauge == Gauge::kPrior) {
       for (std::size_t i = 0; i < selection_.prior.size(); ++i) {
-        if (!selection_.prior[i]) selection_.prior[i] = selection_.scale[static_cast<int>(i)];
+        const auto index = static_cast<std::size_t>(selection_.free[i]);
+        const double tolerance = selection_.parameters[index].tolerance;
+        if (!selection_.prior[i] && tolerance > 0.0) selection_.prior[i] = tolerance;
       }
     }
     report_.free = selection_.free;
@@ -351,6 +353,7 @@ class Identification {
       report_.diagnostics.back().help =
           "measure more, lock parameters, or give them prior deviations";
     }
+    WarnOfArms(set_, &report_);
     if (report_.ok()) WarnOfDoubts(set_, selection_, &report_);
   }
 

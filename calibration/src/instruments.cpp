@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 
 namespace kompono::calibration {
 namespace {
@@ -31,12 +32,17 @@ struct TargetPoint {
   Matrix36 by_twist;
   Eigen::Matrix3d by_offset;
 };
+/// Of a fixture's first number.
+std::ptrdiff_t ValueIndex(int fixture) {
+  return 3 * static_cast<std::ptrdiff_t>(fixture);
+}
+
 TargetPoint TargetOn(const Pose<double>& X_WT,
                      const Measurement& measurement,
                      const FixtureValues& fixtures) {
   Eigen::Vector3d p_TQ = Eigen::Vector3d::Zero();
   if (measurement.target >= 0) {
-    p_TQ = Eigen::Map<const Eigen::Vector3d>(fixtures.value + 3 * measurement.target);
+    p_TQ = Eigen::Map<const Eigen::Vector3d>(fixtures.value + ValueIndex(measurement.target));
   }
   TargetPoint point;
   const Eigen::Vector3d arm = X_WT.R * p_TQ;
@@ -50,7 +56,7 @@ TargetPoint TargetOn(const Pose<double>& X_WT,
 struct Plane {
   Eigen::Vector3d n;
   Eigen::Matrix<double, 3, 2> by_tilt;
-  double offset_mm;
+  double offset_mm = 0.0;
 };
 Plane PlaneOf(const Fixture& fixture, const double* value) {
   const PlaneFrame frame = FrameOf(fixture.normal);
@@ -101,7 +107,8 @@ void MapsOfRelative(const Measurement& measurement,
                     const Pose<double>& X_WT_second,
                     RowMaps* maps) {
   const Pose<double> X_TT = RelativePose(X_WT, X_WT_second);
-  const Eigen::Matrix3d R_TW = X_WT.R.transpose();
+  Eigen::Matrix3d R_TW = X_WT.R;
+  R_TW.transposeInPlace();
   const Eigen::Matrix3d turn =
       LeftJacobianInverse(RotationVector(X_TT.R * measurement.R_WT.transpose())) * R_TW;
   Matrix36 first;
@@ -134,7 +141,7 @@ void MapsOfHole(const Measurement& measurement,
                 RowMaps* maps) {
   constexpr std::array<double, 3> kNoSheet{};
   const double* sheet =
-      measurement.fixture < 0 ? kNoSheet.data() : fixtures.value + 3 * measurement.fixture;
+      measurement.fixture < 0 ? kNoSheet.data() : fixtures.value + ValueIndex(measurement.fixture);
   const Eigen::Matrix3d R_SW = RotationZ(sheet[2]).transpose();
   KeepMeasured(measurement, Matrix36(R_SW * point.by_twist), &maps->first);
   if (measurement.target >= 0) {
@@ -175,7 +182,7 @@ RowErrors ErrorsOf(const Measurement& measurement,
   errors.lengths = static_cast<int>(errors.value.size());
   const TargetPoint point = TargetOn(X_WT, measurement, fixtures);
   const double* fixture =
-      measurement.fixture < 0 ? nullptr : fixtures.value + 3 * measurement.fixture;
+      measurement.fixture < 0 ? nullptr : fixtures.value + ValueIndex(measurement.fixture);
   switch (measurement.kind) {
     case MeasurementKind::kHeight:
       errors.value[0] = point.p_WQ.z() - measurement.value_mm;
@@ -226,7 +233,7 @@ RowMaps MapsOf(const Measurement& measurement,
   if (measurement.fixture >= 0) maps.fixture.setZero(numbers, 3);
   const TargetPoint point = TargetOn(X_WT, measurement, fixtures);
   const double* fixture =
-      measurement.fixture < 0 ? nullptr : fixtures.value + 3 * measurement.fixture;
+      measurement.fixture < 0 ? nullptr : fixtures.value + ValueIndex(measurement.fixture);
   switch (measurement.kind) {
     case MeasurementKind::kHeight:
       MapsAlong(Eigen::Vector3d::UnitZ(), point, &maps);

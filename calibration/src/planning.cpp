@@ -220,7 +220,7 @@ class Planner {
     return sigma < kBlind ? sigma : std::numeric_limits<double>::infinity();
   }
 
-  Plan Report(const std::vector<std::size_t>& ordered) const {
+  [[nodiscard]] Plan Report(const std::vector<std::size_t>& ordered) const {
     Plan plan;
     plan.set.fixtures = pool_.fixtures;
     plan.free = static_cast<int>(selection_.free.size());

@@ -93,10 +93,9 @@ class Selector {
   }
 
   void ChooseFree() {
-    if (!options_.free.empty()) {
-      Mark(options_.free, true, "free");
-      return;
-    }
+    Mark(options_.free, true, "free");
+    for (const ParameterGroup group : options_.groups) MarkGroup(group);
+    if (!options_.free.empty() || !options_.groups.empty()) return;
     if (!settings().free.empty()) {
       Mark(settings().free, true, "the layout's [calibration] free");
     } else if (!set_.suggested_free.empty()) {
@@ -107,6 +106,14 @@ class Selector {
       }
     }
     KeepSuggested();
+  }
+
+  void MarkGroup(ParameterGroup group) {
+    for (std::size_t i = 0; i < machine_.parameters().size(); ++i) {
+      const ParameterGroup of = GroupOf(parameters_[i].name);
+      if (group != ParameterGroup::kAll && group != of) continue;
+      chosen_[i] = chosen_[i] || parameters_[i].identifiable || of == ParameterGroup::kFrames;
+    }
   }
 
   /// What a format knows not to be visible in its files is not fitted for being in the layout.
@@ -179,6 +186,15 @@ class Selector {
               }
               selection->prior[i] = sigma;
             });
+    if (options_.prior_tolerances < 0.0) {
+      Complain(codes::kBadPrior.code, "priors of a negative number of tolerances make no sense");
+    }
+    if (options_.prior_tolerances <= 0.0) return;
+    for (std::size_t i = 0; i < selection->free.size(); ++i) {
+      const double tolerance = At(selection->free[i]).tolerance;
+      if (selection->prior[i] || tolerance <= 0.0) continue;
+      selection->prior[i] = options_.prior_tolerances * tolerance;
+    }
   }
 
   void GiveBounds(Selection* selection) {
@@ -230,6 +246,28 @@ Eigen::VectorXd Selection::Unknowns(const Eigen::VectorXd& theta) const {
     u[i] = (theta[index] - nominal[index]) / scale[i];
   }
   return u;
+}
+
+std::string_view Name(ParameterGroup group) {
+  switch (group) {
+    case ParameterGroup::kOffsets:
+      return "offsets";
+    case ParameterGroup::kFrames:
+      return "frames";
+    case ParameterGroup::kGeometry:
+      return "geometry";
+    case ParameterGroup::kAll:
+      break;
+  }
+  return "all";
+}
+
+ParameterGroup GroupOf(std::string_view parameter) {
+  if (parameter.ends_with(".zero")) return ParameterGroup::kOffsets;
+  for (const std::string_view frame : {".mount.", ".position.", ".rotation.", "open_base."}) {
+    if (parameter.find(frame) != std::string_view::npos) return ParameterGroup::kFrames;
+  }
+  return ParameterGroup::kGeometry;
 }
 
 bool NamesParameter(const kinematics::Machine& machine,

@@ -358,6 +358,25 @@ void JudgeParameters(const Selection& selection,
   }
 }
 
+void WarnOfArms(const MeasurementSet& set, CalibrationReport* report) {
+  const bool heights_only =
+      std::all_of(set.measurements.begin(), set.measurements.end(), [](const Measurement& m) {
+        return m.kind == MeasurementKind::kHeight;
+      });
+  for (const IdentifiedParameter& parameter : report->parameters) {
+    if (!heights_only || parameter.name.find(".strut") == std::string::npos) continue;
+    report->diagnostics.push_back(
+        Warning(set,
+                codes::kArmsOnHeights.code,
+                fmt::format("{} and the other struts are fitted to heights alone: the heights then "
+                            "fit better and the machine is known worse, for sizes in X and Y are "
+                            "hardly seen",
+                            parameter.name),
+                "lock the struts, or measure distances too; compare held-out errors with --folds"));
+    break;
+  }
+}
+
 void WarnOfDoubts(const MeasurementSet& set,
                   const Selection& selection,
                   CalibrationReport* report) {
@@ -374,22 +393,6 @@ void WarnOfDoubts(const MeasurementSet& set,
                             report->numbers,
                             selection.size()),
                 "measure more"));
-  }
-  const bool heights_only =
-      std::all_of(set.measurements.begin(), set.measurements.end(), [](const Measurement& m) {
-        return m.kind == MeasurementKind::kHeight;
-      });
-  for (const IdentifiedParameter& parameter : report->parameters) {
-    if (!heights_only || parameter.name.find(".strut") == std::string::npos) continue;
-    report->diagnostics.push_back(
-        Warning(set,
-                codes::kArmsOnHeights.code,
-                fmt::format("{} and the other struts are fitted to heights alone: the heights then "
-                            "fit better and the machine is known worse, for sizes in X and Y are "
-                            "hardly seen",
-                            parameter.name),
-                "lock the struts, or measure distances too; compare held-out errors with --folds"));
-    break;
   }
   WarnOfContradiction(set, report);
   TellRejected(set, report);

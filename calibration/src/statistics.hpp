@@ -46,6 +46,9 @@ void JudgeTool(const std::vector<std::size_t>& fitted,
 /// What chance says of the errors left, in words.
 [[nodiscard]] std::string Verdict(const CalibrationReport& report);
 
+/// Fitting struts to heights alone is warned of, also where it fails.
+void WarnOfArms(const MeasurementSet& set, CalibrationReport* report);
+
 /// Warnings about a result that can be used but should be looked at.
 void WarnOfDoubts(const MeasurementSet& set, const Selection& selection, CalibrationReport* report);
 

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "kompono/calibration/cross_validation.hpp"
@@ -23,6 +25,7 @@ namespace {
 using calibration::CalibrationReport;
 using calibration::IdentifyOptions;
 using calibration::MeasurementSet;
+using calibration::ParameterGroup;
 using kinematics::Machine;
 using nlohmann::ordered_json;
 
@@ -30,12 +33,14 @@ constexpr const char* kExamples =
     "  kompono calibrate machine.toml points.csv -o calibrated.toml\n"
     "  kompono calibrate machine.toml points.csv --free 'drive.*,open_base' --held-out 0.3\n"
     "  kompono calibrate machine.toml points.csv --prior 'drive.L1=0.05' --report report.json\n"
+    "  kompono calibrate machine.toml points.csv --group offsets --prior-tolerances 3\n"
     "  kompono calibrate delta.toml run.csv --published run.json        against Klipper's own fit";
 
 struct Options {
   std::string file, out, published, report;
   std::vector<std::string> measurements;
-  std::vector<std::string> free, lock, prior, bounds;
+  std::vector<std::string> free, lock, prior, bounds, groups;
+  double prior_tolerances = 0.0;
   double held_out = 0.0;
   std::uint64_t seed = 1;
   double sigma_mm = IdentifyOptions{}.default_sigma_mm;
@@ -51,6 +56,27 @@ struct Options {
   bool force = false;
 };
 
+std::vector<ParameterGroup> GroupsOf(const std::vector<std::string>& words, Diagnostics& problems) {
+  constexpr std::array kGroups{ParameterGroup::kOffsets,
+                               ParameterGroup::kFrames,
+                               ParameterGroup::kGeometry,
+                               ParameterGroup::kAll};
+  std::vector<ParameterGroup> out;
+  for (const std::string& word : SplitWords(words)) {
+    const auto* const found = std::find_if(kGroups.begin(), kGroups.end(), [&word](auto group) {
+      return calibration::Name(group) == word;
+    });
+    if (found != kGroups.end()) {
+      out.push_back(*found);
+      continue;
+    }
+    problems.push_back({.code = std::string(codes::kUsage.code),
+                        .message = fmt::format("--group: no group of numbers is called '{}'", word),
+                        .help = "offsets, frames, geometry or all, or several with commas"});
+  }
+  return out;
+}
+
 IdentifyOptions IdentifyOptionsOf(const Machine& machine,
                                   const plugin::Registry& registry,
                                   const Options& options,
@@ -58,6 +84,8 @@ IdentifyOptions IdentifyOptionsOf(const Machine& machine,
   IdentifyOptions out;
   out.free = SplitWords(options.free);
   out.lock = SplitWords(options.lock);
+  out.groups = GroupsOf(options.groups, problems);
+  out.prior_tolerances = options.prior_tolerances;
   const GeometryForms forms = FormsOf(machine, registry);
   if (!options.prior.empty())
     out.prior_sigma =
@@ -286,9 +314,19 @@ void AddFitOptions(CLI::App& command, Session& session, Options& options) {
         command.add_option(name, value, text)->type_name(form)->allow_extra_args(false);
       };
   patterns("--free", options.free, "PATTERN,..", "What may change; else as the layout says");
+  patterns("--group",
+           options.groups,
+           "GROUP,..",
+           "What may change, by kind: offsets, frames, geometry or all");
   patterns("--lock", options.lock, "PATTERN,..", "What may not change");
   patterns(
       "--prior", options.prior, "PATTERN=SIGMA,", "Expected deviation from nominal, mm or deg");
+  command
+      .add_option("--prior-tolerances",
+                  options.prior_tolerances,
+                  "Expect numbers within so many manufacturing tolerances (0: no matter)")
+      ->type_name("FACTOR")
+      ->check(CLI::NonNegativeNumber);
   patterns("--bounds", options.bounds, "PATTERN=LO:HI,", "Limits, mm or deg");
   command.add_option("--held-out", options.held_out, "Share of the rows kept to judge the fit (0)")
       ->type_name("FRACTION")

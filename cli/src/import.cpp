@@ -140,6 +140,8 @@ void AddImport(CLI::App& root, Session& session) {
                ValueHint::Kind::kFile);
   command->add_flag("--force", options->force, "Replace the file if it exists");
   session.OnRun(command, [&session, options] { return Run(session, *options); });
+  AddImportKlipperConfig(*import, session);
+  AddImportTracker(*import, session);
 }
 
 }  // namespace kompono::cli

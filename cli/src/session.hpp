@@ -84,6 +84,9 @@ void AddCompensate(CLI::App& root, Session& session);
 void AddCatalog(CLI::App& root, Session& session);
 void AddExport(CLI::App& root, Session& session);
 void AddImport(CLI::App& root, Session& session);
+/// Subcommands of import.
+void AddImportKlipperConfig(CLI::App& import, Session& session);
+void AddImportTracker(CLI::App& import, Session& session);
 void AddCompletion(CLI::App& root, Session& session);
 
 }  // namespace kompono::cli

@@ -202,7 +202,14 @@ TEST(Hexapod, UnseenCombinationsMayBeFrozenOrGivenPriorsInstead) {
   options.gauge = Gauge::kPrior;
   const CalibrationReport prior = Identify(machine, set, options);
   ASSERT_EQ(prior.status, IdentifyStatus::kConverged) << RenderText(prior);
-  EXPECT_LT(RmsAfter(prior, "position", true), 3.2e-3);
+  // The true joints are off by five tolerances, more than such a prior believes.
+  std::printf("with priors of one tolerance %.2f um\n", 1e3 * RmsAfter(prior, "position", true));
+  EXPECT_LT(RmsAfter(prior, "position", true), 4.5e-3);
+  options.gauge = Gauge::kMinimumNorm;
+  options.prior_tolerances = 10.0;
+  const CalibrationReport wide = Identify(machine, set, options);
+  ASSERT_EQ(wide.status, IdentifyStatus::kConverged) << RenderText(wide);
+  EXPECT_LT(RmsAfter(wide, "position", true), 3.2e-3);
 }
 
 }  // namespace

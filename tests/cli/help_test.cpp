@@ -2,6 +2,7 @@
 // Every --help, found by walking through the commands that the helps themselves list.
 #include "program.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 namespace kompono::cli_test {
@@ -82,14 +83,16 @@ TEST_F(Help, ExamplesNameOnlyOptionsThatExist) {
       words >> program >> command;
       if (program != "kompono") continue;
       std::vector<std::string> arguments{command};
-      if (command == "catalog" || command == "import") {
-        std::string below;
-        words >> below;
-        arguments.push_back(below);
+      std::vector<std::string> rest;
+      for (std::string word; words >> word;) rest.push_back(word);
+      // catalog, import and calibrate have commands of their own below them.
+      const std::vector<std::string> below = Commands(Run({command, "--help"}).out);
+      if (!rest.empty() && std::find(below.begin(), below.end(), rest.front()) != below.end()) {
+        arguments.push_back(rest.front());
       }
       arguments.emplace_back("--help");
       const std::string described = Run(arguments).out;
-      for (std::string word; words >> word;) {
+      for (const std::string& word : rest) {
         if (word.starts_with("--")) {
           EXPECT_THAT(described, HasSubstr(word.substr(0, word.find('=')))) << line;
         }

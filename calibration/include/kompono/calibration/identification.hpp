@@ -43,17 +43,35 @@ enum class Outliers {
 enum class Gauge {
   kMinimumNorm,  ///< the smallest change, every number in units of its tolerance
   kFreeze,       ///< one number of each combination stays at its start
-  kPrior,        ///< every number is expected at its nominal value within its tolerance
+  kPrior,        ///< numbers with a tolerance are expected at their nominal value within it
 };
+
+/// Kinds of numbers, so that a part of a calibration can be repeated: after a crash the offsets,
+/// after a move of the machine the frames.
+enum class ParameterGroup {
+  kOffsets,   ///< zeros of drives
+  kFrames,    ///< where blocks, axes, tool and open base stand
+  kGeometry,  ///< what the modules are made of: lengths, joints
+  kAll,
+};
+[[nodiscard]] std::string_view Name(ParameterGroup group);
+/// Which of the first three a number is of, by its name.
+[[nodiscard]] ParameterGroup GroupOf(std::string_view parameter);
 
 struct IdentifyOptions {
   /// What may change, as patterns (layout::MatchesPattern): "struts.base[*]", "*.zero",
   /// "open_base". Without: the layout's [calibration] free, or all parameters marked identifiable,
   /// and of these only what the measurement format fits if it says so.
   std::vector<std::string> free;
+  /// Added to `free` if that is given, else in place of the layout's: the numbers of these groups.
+  /// Of offsets and geometry those marked identifiable, all frames.
+  std::vector<ParameterGroup> groups;
   /// What may not. Added to the layout's lock, which holds unless `free` above is given.
   std::vector<std::string> lock;
-  std::map<std::string, double> prior_sigma;            ///< over the layout's; mm, rad
+  std::map<std::string, double> prior_sigma;  ///< over the layout's; mm, rad
+  /// Free numbers without another prior are expected within so many manufacturing tolerances of
+  /// their nominal value; 0: not.
+  double prior_tolerances = 0.0;
   std::map<std::string, std::array<double, 2>> bounds;  ///< over the layout's; mm, rad
   double default_sigma_mm = 0.01;                       ///< for rows without their own
   double default_sigma_rad = 1e-5;                      ///< for rows without their own
