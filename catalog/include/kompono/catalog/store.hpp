@@ -18,6 +18,8 @@
 
 #include "kompono/catalog/query.hpp"
 #include "kompono/catalog/record.hpp"
+#include "kompono/catalog/search.hpp"
+#include "kompono/catalog/study.hpp"
 #include "kompono/diagnostics/diagnostic.hpp"
 
 namespace kompono::catalog {
@@ -79,6 +81,12 @@ struct Statistics {
   std::int64_t metrics = 0;
   std::int64_t failed_metrics = 0;
   std::int64_t calibrations = 0;
+  std::int64_t evaluations = 0;
+  std::int64_t evaluations_ok = 0;
+  std::int64_t evaluations_rejected = 0;
+  std::int64_t evaluations_failed = 0;
+  std::vector<Count> studies;   ///< evaluations per study
+  std::vector<Count> rejected;  ///< evaluations per "stage: reason" that are not ok, most first
   std::vector<Count> modules;   ///< layouts per module, most used first
   std::vector<Count> plugins;   ///< layouts per plugin "id version", most used first
   std::vector<Count> programs;  ///< layouts per program version
@@ -86,12 +94,34 @@ struct Statistics {
 
 [[nodiscard]] nlohmann::ordered_json ToJson(const Statistics& statistics);
 
-/// What `Store::Verify` looked at and what it found (E0530-E0534).
+/// What `Store::Verify` looked at and what it found (E0530-E0537).
 struct VerifyReport {
   std::int64_t layouts = 0;
   std::int64_t calibrations = 0;
+  std::int64_t evaluations = 0;
   Diagnostics findings;
   [[nodiscard]] bool Ok() const { return findings.empty(); }
+};
+
+struct MergeResult {
+  std::int64_t layouts_added = 0;
+  std::int64_t layouts_updated = 0;
+  std::int64_t layouts_unchanged = 0;
+  std::int64_t studies_added = 0;
+  std::int64_t evaluations_written = 0;
+  std::int64_t evaluations_skipped = 0;
+};
+
+enum class ExportFormat {
+  kJson,  ///< one file, one layout or evaluation per line
+  kCsv,   ///< a folder with one table per file
+  kToml,  ///< a folder with one layout file per layout
+};
+
+struct ExportSummary {
+  std::int64_t layouts = 0;
+  std::int64_t evaluations = 0;
+  std::int64_t files = 0;
 };
 
 /// The catalog of machine layouts, one SQLite file.
@@ -129,6 +159,31 @@ class Store {
   [[nodiscard]] Parsed<std::vector<AddResult>> AddAll(std::span<const LayoutRecord> records,
                                                       const AddOptions& options = {});
 
+  /// The id of a study, which is added if it is not there: the start of a run and its resumption.
+  [[nodiscard]] Parsed<std::int64_t> BeginStudy(const StudyRecord& study);
+
+  /// Writes the evaluations of `range` and marks it done, in one transaction. Candidates that are
+  /// done stay as they are.
+  [[nodiscard]] Parsed<AppendResult> AppendChunk(std::int64_t study,
+                                                 const IndexRange& range,
+                                                 std::span<const EvaluationRecord> records);
+
+  /// The parts of `whole` that are not done, ascending.
+  [[nodiscard]] Parsed<std::vector<IndexRange>> MissingRanges(std::int64_t study,
+                                                              const IndexRange& whole) const;
+
+  /// In the order of candidates; what is not done is left out. Layouts come with name, formula,
+  /// blocks and parameters if `with_layouts`.
+  [[nodiscard]] Parsed<std::vector<EvaluationRecord>> Evaluations(std::int64_t study,
+                                                                  const IndexRange& range,
+                                                                  bool with_layouts = false) const;
+
+  /// In the order of ids.
+  [[nodiscard]] Parsed<std::vector<StudySummary>> Studies() const;
+
+  /// Takes over all layouts, studies and evaluations of `other`. Doing it again changes nothing.
+  [[nodiscard]] Parsed<MergeResult> Merge(const Store& other);
+
   /// `key` is a name, an id, or at least four digits of a hash, tried in this order.
   [[nodiscard]] Parsed<StoredLayout> Show(std::string_view key) const;
 
@@ -145,6 +200,20 @@ class Store {
 
   /// Answers over a connection that can only read the documented views, within `request.limits`.
   [[nodiscard]] Parsed<Table> Query(const QueryRequest& request) const;
+
+  /// Layouts and studies with all the words of `text`, best first. A word that ends in * stands for
+  /// all that begin so; nothing else has a meaning of its own.
+  [[nodiscard]] Parsed<std::vector<SearchHit>> Search(std::string_view text,
+                                                      std::int64_t limit = 20) const;
+
+  /// Layouts whose structure resembles that of the layout `key`, best first, itself left out.
+  [[nodiscard]] Parsed<std::vector<SimilarLayout>> Similar(std::string_view key,
+                                                           std::int64_t limit = 20) const;
+
+  /// Everything, in an order that depends on the contents only: catalogs with the same layouts and
+  /// evaluations give the same bytes, however they came together. Times and ids are left out.
+  [[nodiscard]] Parsed<ExportSummary> ExportAll(ExportFormat format,
+                                                const std::filesystem::path& out) const;
 
   /// SQLite's plan for the same request, one step per line: "SEARCH l USING INDEX layout_by_name
   /// (name=?)".
