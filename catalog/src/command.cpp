@@ -54,10 +54,15 @@ int Command::Run() {
 }
 
 std::int64_t Command::Ask() {
-  const bool found = Step() == SQLITE_ROW;
-  const std::int64_t answer = found ? sqlite3_column_int64(statement_.get(), 0) : 0;
+  const std::optional<std::int64_t> answer = Look();
+  if (!answer) throw SQLite::Exception("a row just written is missing", SQLITE_CORRUPT);
+  return *answer;
+}
+
+std::optional<std::int64_t> Command::Look() {
+  std::optional<std::int64_t> answer;
+  if (Step() == SQLITE_ROW) answer = sqlite3_column_int64(statement_.get(), 0);
   sqlite3_reset(statement_.get());
-  if (!found) throw SQLite::Exception("a row just written is missing", SQLITE_CORRUPT);
   return answer;
 }
 

@@ -37,6 +37,9 @@ class Command {
   /// The same for a question that must have an answer: the first column of the first row.
   std::int64_t Ask();
 
+  /// The first column of the first row, if there is one.
+  std::optional<std::int64_t> Look();
+
   [[nodiscard]] int ParameterCount() const {
     return sqlite3_bind_parameter_count(statement_.get());
   }

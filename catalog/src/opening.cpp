@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opening.hpp"
 
+#include "bulk.hpp"
 #include "failure.hpp"
 #include "schema.hpp"
 #include <SQLiteCpp/Statement.h>
@@ -201,6 +202,14 @@ Parsed<Opened> OpenForWriting(const fs::path& path, std::chrono::milliseconds ti
   // file less often.
   opened.db->exec("PRAGMA cache_size = -262144");
   opened.db->exec("PRAGMA wal_autocheckpoint = 16384");
+  if (BulkLoading(*opened.db)) {
+    EndBulk(*opened.db);
+    opened.notes.push_back({.severity = Severity::kNote,
+                            .code = "N0502",
+                            .file = path.string(),
+                            .message = "the indexes were made that a load left out",
+                            .help = ""});
+  }
   return opened;
 }
 

@@ -4,10 +4,12 @@
 #include "expression.hpp"
 #include "failure.hpp"
 #include "guard.hpp"
+#include "metric_terms.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <sqlite3.h>
@@ -22,16 +24,23 @@ class Composition {
  public:
   void Append(std::string_view sql) { sql_ += sql; }
 
-  /// `(` tokens `)`, so that the text stays one operand whatever it is.
-  void AppendOperand(const Expression& expression, std::size_t first, std::size_t last) {
-    const std::size_t begin = expression.tokens[first].begin;
-    const std::size_t end = expression.tokens[last - 1].end;
+  /// `(` tokens `)`, so that the text stays one operand whatever it is; `terms` of the text are
+  /// put into SQL.
+  void AppendOperand(const Expression& expression,
+                     std::span<const MetricTerms::Term> terms,
+                     std::size_t first,
+                     std::size_t last) {
+    std::size_t begin = expression.tokens[first].begin;
     sql_ += '(';
-    pieces_.push_back({.sql_begin = sql_.size(),
-                       .length = end - begin,
-                       .expression = &expression,
-                       .begin = begin});
-    sql_ += expression.text.substr(begin, end - begin);
+    for (const MetricTerms::Term& term : terms) {
+      if (term.first < first || term.last > last) continue;
+      const std::size_t from = expression.tokens[term.first].begin;
+      AppendPiece(expression, begin, expression.text.substr(begin, from - begin));
+      AppendPiece(expression, from, term.Sql());
+      begin = expression.tokens[term.last - 1].end;
+    }
+    const std::size_t end = expression.tokens[last - 1].end;
+    AppendPiece(expression, begin, expression.text.substr(begin, end - begin));
     sql_ += ')';
   }
 
@@ -79,6 +88,14 @@ class Composition {
   }
 
  private:
+  void AppendPiece(const Expression& expression, std::size_t begin, const std::string& sql) {
+    pieces_.push_back({.sql_begin = sql_.size(),
+                       .length = sql.size(),
+                       .expression = &expression,
+                       .begin = begin});
+    sql_ += sql;
+  }
+
   struct Piece {
     std::size_t sql_begin;
     std::size_t length;
@@ -92,9 +109,14 @@ class Composition {
 using Views = std::map<std::string, std::vector<std::string>>;
 
 struct Prepared {
-  Expression where;
-  Expression columns;
-  Expression sort;
+  struct Text {
+    Expression expression;
+    std::vector<ListItem> items;
+    std::vector<MetricTerms::Term> terms;
+  };
+  Text where;
+  Text columns;
+  Text sort;
   std::vector<std::string> names;
   Composition composition;
 };
@@ -117,22 +139,56 @@ std::string JoinedNames(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-void AppendColumns(const std::vector<ListItem>& items, Prepared& prepared) {
-  for (const ListItem& item : items) {
-    const std::size_t begin = prepared.columns.tokens[item.first].begin;
-    const std::size_t end = prepared.columns.tokens[item.last - 1].end;
-    const std::string text = prepared.columns.text.substr(begin, end - begin);
+void AppendColumns(Prepared& prepared) {
+  const Prepared::Text& columns = prepared.columns;
+  for (const ListItem& item : columns.items) {
+    const std::size_t begin = columns.expression.tokens[item.first].begin;
+    const std::size_t end = columns.expression.tokens[item.last - 1].end;
+    const std::string text = columns.expression.text.substr(begin, end - begin);
     const std::string name = !item.alias.empty() ? item.alias : Unquoted(text);
     if (!prepared.names.empty()) prepared.composition.Append(", ");
     prepared.names.push_back(Unique(name, prepared.names));
-    prepared.composition.AppendOperand(prepared.columns, item.first, item.last);
+    prepared.composition.AppendOperand(columns.expression, columns.terms, item.first, item.last);
     prepared.composition.Append(" AS " + QuotedName(prepared.names.back()));
   }
 }
 
-/// SELECT (columns) FROM layouts WHERE (where) ORDER BY (sort) LIMIT n; all texts are judged before
-/// any is refused.
-Parsed<std::unique_ptr<Prepared>> Compose(const QueryRequest& request, const Views& views) {
+/// Judges all texts before any is refused.
+Diagnostics ReadTexts(const QueryRequest& request,
+                      const std::string& wanted,
+                      MetricTerms& metrics,
+                      Prepared& prepared) {
+  Diagnostics found;
+  const auto keep = [&found](const auto& parsed) {
+    if (!parsed) found.insert(found.end(), parsed.error().begin(), parsed.error().end());
+    return parsed.has_value();
+  };
+  const auto terms = [&](Prepared::Text& text) {
+    if (auto named = metrics.In(text.expression); keep(named)) text.terms = *std::move(named);
+  };
+  if (auto where = Scan(request.where, "where"); keep(where)) {
+    prepared.where.expression = *std::move(where);
+    terms(prepared.where);
+  }
+  if (auto text = Scan(wanted, "columns"); keep(text)) {
+    prepared.columns.expression = *std::move(text);
+    if (auto items = SplitColumns(prepared.columns.expression); keep(items))
+      prepared.columns.items = *std::move(items);
+    terms(prepared.columns);
+  }
+  if (auto text = Scan(request.sort, "sort"); keep(text) && !text->tokens.empty()) {
+    prepared.sort.expression = *std::move(text);
+    if (auto items = SplitSort(prepared.sort.expression); keep(items))
+      prepared.sort.items = *std::move(items);
+    terms(prepared.sort);
+  }
+  return found;
+}
+
+/// SELECT (columns) FROM layouts JOIN metrics WHERE (where) ORDER BY (sort) LIMIT n
+Parsed<std::unique_ptr<Prepared>> Compose(const QueryRequest& request,
+                                          const Views& views,
+                                          SQLite::Database& db) {
   std::string wanted = request.columns;
   const auto blank = [](const std::string& text) {
     return text.find_first_not_of(" \t\r\n") == std::string::npos;
@@ -141,37 +197,26 @@ Parsed<std::unique_ptr<Prepared>> Compose(const QueryRequest& request, const Vie
   if (wanted.find_first_not_of(" \t\r\n*") == std::string::npos)
     wanted = JoinedNames(views.at("layouts"));
 
-  Diagnostics found;
-  const auto keep = [&found](const auto& parsed) {
-    if (!parsed) found.insert(found.end(), parsed.error().begin(), parsed.error().end());
-    return parsed.has_value();
-  };
+  MetricTerms metrics(db);
   auto prepared = std::make_unique<Prepared>();
-  std::vector<ListItem> columns;
-  std::vector<ListItem> sort;
-  if (auto where = Scan(request.where, "where"); keep(where)) prepared->where = *std::move(where);
-  if (auto text = Scan(wanted, "columns"); keep(text)) {
-    prepared->columns = *std::move(text);
-    if (auto items = SplitColumns(prepared->columns); keep(items)) columns = *std::move(items);
-  }
-  if (auto text = Scan(request.sort, "sort"); keep(text) && !text->tokens.empty()) {
-    prepared->sort = *std::move(text);
-    if (auto items = SplitSort(prepared->sort); keep(items)) sort = *std::move(items);
-  }
-  if (!found.empty()) return tl::make_unexpected(std::move(found));
+  if (Diagnostics found = ReadTexts(request, wanted, metrics, *prepared); !found.empty())
+    return tl::make_unexpected(std::move(found));
 
   Composition& composition = prepared->composition;
   composition.Append("SELECT ");
-  AppendColumns(columns, *prepared);
-  composition.Append(" FROM layouts");
-  if (!prepared->where.tokens.empty()) {
+  AppendColumns(*prepared);
+  composition.Append(" FROM layouts" + metrics.Joins());
+  const Prepared::Text& where = prepared->where;
+  if (!where.expression.tokens.empty()) {
     composition.Append(" WHERE ");
-    composition.AppendOperand(prepared->where, 0, prepared->where.tokens.size());
+    composition.AppendOperand(where.expression, where.terms, 0, where.expression.tokens.size());
   }
-  for (std::size_t i = 0; i < sort.size(); ++i) {
+  const Prepared::Text& sort = prepared->sort;
+  for (std::size_t i = 0; i < sort.items.size(); ++i) {
+    const ListItem& item = sort.items[i];
     composition.Append(i == 0 ? " ORDER BY " : ", ");
-    composition.AppendOperand(prepared->sort, sort[i].first, sort[i].last);
-    composition.Append(sort[i].direction);
+    composition.AppendOperand(sort.expression, sort.terms, item.first, item.last);
+    composition.Append(item.direction);
   }
   // One row more than asked tells whether there are more.
   if (request.limit > 0) composition.Append(fmt::format(" LIMIT {}", request.limit + 1));
@@ -362,7 +407,7 @@ Diagnostic FromStop(Watch::Stop stop, const QueryLimits& limits) {
 }  // namespace
 
 Parsed<Table> Reader::Query(const QueryRequest& request) {
-  const auto prepared = Compose(request, permissions_->Views());
+  const auto prepared = Compose(request, permissions_->Views(), db_);
   if (!prepared) return tl::make_unexpected(prepared.error());
   const Composition& composition = (*prepared)->composition;
   const Watch watch(db_, request.limits);
@@ -415,7 +460,7 @@ Parsed<Table> Reader::Query(const QueryRequest& request) {
 }
 
 Parsed<std::vector<std::string>> Reader::Explain(const QueryRequest& request) {
-  const auto prepared = Compose(request, permissions_->Views());
+  const auto prepared = Compose(request, permissions_->Views(), db_);
   if (!prepared) return tl::make_unexpected(prepared.error());
   const Composition& composition = (*prepared)->composition;
   const auto statement =

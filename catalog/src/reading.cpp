@@ -2,6 +2,7 @@
 #include "reading.hpp"
 
 #include "failure.hpp"
+#include "record_parts.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,9 +57,14 @@ std::vector<Candidate> ByHash(SQLite::Database& db, std::string_view key) {
       Sha256FromHex(std::string(key) + std::string(digits - key.size(), 'f'));
   if (!low || !high) return {};
   SQLite::Statement query(
-      db, "SELECT id, content_hash FROM layout WHERE content_hash BETWEEN ? AND ? LIMIT 10");
-  query.bindNoCopy(1, low->data(), static_cast<int>(low->size()));
-  query.bindNoCopy(2, high->data(), static_cast<int>(high->size()));
+      db,
+      "SELECT id, content_hash FROM layout WHERE hash_key BETWEEN ? AND ? AND content_hash BETWEEN "
+      "? AND ? ORDER BY content_hash LIMIT 10");
+  // Four digits are equal, so both keys have the same sign.
+  query.bind(1, KeyOf(*low));
+  query.bind(2, KeyOf(*high));
+  query.bindNoCopy(3, low->data(), static_cast<int>(low->size()));
+  query.bindNoCopy(4, high->data(), static_cast<int>(high->size()));
   return Candidates(query);
 }
 
@@ -69,105 +75,19 @@ std::string Suggestion(SQLite::Database& db, std::string_view key) {
   return names.empty() ? "the catalog is empty" : DidYouMean(key, names);
 }
 
-void ReadMotions(SQLite::Database& db, StoredLayout& layout) {
-  SQLite::Statement row(
-      db,
-      "SELECT m.axis, m.side, m.working, m.block FROM motion AS m "
-      "JOIN layout AS l ON l.formula_id = m.formula_id WHERE l.id = ? ORDER BY m.position");
-  row.bind(1, layout.id);
-  while (row.executeStep()) {
-    layout.record.motions.push_back(
-        {.axis = row.getColumn(0).getString(),
-         .side = row.getColumn(1).getString() == "workpiece" ? Side::kWorkpiece : Side::kTool,
-         .working = row.getColumn(2).getInt() != 0,
-         .block = row.getColumn(3).getString()});
-  }
-}
-
-void ReadBlocks(SQLite::Database& db, StoredLayout& layout) {
-  SQLite::Statement row(db,
-                        "SELECT b.name, m.name, m.plugin FROM layout_block AS b JOIN module AS m "
-                        "ON m.id = b.module_id "
-                        "WHERE b.layout_id = ? ORDER BY b.position");
-  row.bind(1, layout.id);
-  while (row.executeStep()) {
-    layout.record.blocks.push_back({.name = row.getColumn(0).getString(),
-                                    .module = row.getColumn(1).getString(),
-                                    .plugin = row.getColumn(2).getString()});
-  }
-}
-
-void ReadNumbers(SQLite::Database& db, StoredLayout& layout) {
-  SQLite::Statement parameter(
-      db,
-      "SELECT q.name, r.value, q.unit FROM parameter AS r "
-      "JOIN quantity AS q ON q.id = r.quantity_id WHERE r.layout_id = ? ORDER BY q.name");
-  parameter.bind(1, layout.id);
-  while (parameter.executeStep()) {
-    layout.record.parameters.push_back({.name = parameter.getColumn(0).getString(),
-                                        .value = parameter.getColumn(1).getDouble(),
-                                        .unit = parameter.getColumn(2).getString()});
-  }
-  SQLite::Statement metric(
-      db,
-      "SELECT q.name, r.value, q.unit, t.text, r.failure FROM metric AS r "
-      "JOIN quantity AS q ON q.id = r.quantity_id JOIN term AS t ON t.id = r.method_id "
-      "WHERE r.layout_id = ? ORDER BY q.name, q.unit, t.text");
-  metric.bind(1, layout.id);
-  while (metric.executeStep()) {
-    layout.record.metrics.push_back({.name = metric.getColumn(0).getString(),
-                                     .value = NumberAt(metric, 1),
-                                     .unit = metric.getColumn(2).getString(),
-                                     .method = metric.getColumn(3).getString(),
-                                     .failure = metric.getColumn(4).getString()});
-  }
-}
-
-void ReadResults(SQLite::Database& db, StoredLayout& layout) {
-  SQLite::Statement capability(
-      db,
-      "SELECT t.text, r.detail FROM capability AS r JOIN term AS t ON t.id = r.name_id "
-      "WHERE r.layout_id = ? ORDER BY t.text");
-  capability.bind(1, layout.id);
-  while (capability.executeStep()) {
-    layout.record.capabilities.push_back({.name = capability.getColumn(0).getString(),
-                                          .detail = capability.getColumn(1).getString()});
-  }
-  SQLite::Statement calibration(
-      db,
-      "SELECT measurements, measurements_hash, status, rms_before_um, rms_after_um, "
-      "sigma_um, degrees_of_freedom, report FROM calibration WHERE layout_id = ? "
-      "ORDER BY id");
-  calibration.bind(1, layout.id);
-  while (calibration.executeStep())
-    layout.record.calibrations.push_back(CalibrationAt(calibration, 0));
-}
-
-void ReadProvenance(SQLite::Database& db, StoredLayout& layout) {
-  SQLite::Statement row(
-      db,
-      "SELECT p.id, p.program_version, p.source_path, p.source_hash FROM provenance AS p "
-      "JOIN layout AS l ON l.provenance_id = p.id WHERE l.id = ?");
-  row.bind(1, layout.id);
-  if (!row.executeStep()) return;
-  Provenance& provenance = layout.record.provenance;
-  provenance.program_version = row.getColumn(1).getString();
-  provenance.source_path = row.getColumn(2).getString();
-  provenance.source_sha256 = row.getColumn(3).getString();
-  SQLite::Statement plugin(
-      db, "SELECT plugin, version FROM provenance_plugin WHERE provenance_id = ? ORDER BY plugin");
-  plugin.bind(1, row.getColumn(0).getInt64());
-  while (plugin.executeStep()) {
-    provenance.plugins.push_back(
-        {.id = plugin.getColumn(0).getString(), .version = plugin.getColumn(1).getString()});
-  }
-}
-
 }  // namespace
 
 std::optional<double> NumberAt(SQLite::Statement& row, int column) {
   const SQLite::Column value = row.getColumn(column);
   return value.isNull() ? std::nullopt : std::optional(value.getDouble());
+}
+
+Metric MetricAt(SQLite::Statement& row) {
+  return {.name = row.getColumn(0).getString(),
+          .value = NumberAt(row, 1),
+          .unit = row.getColumn(2).getString(),
+          .method = row.getColumn(3).getString(),
+          .failure = row.getColumn(4).getString()};
 }
 
 Sha256 DigestAt(SQLite::Statement& row, int column) {
@@ -220,37 +140,149 @@ Parsed<std::int64_t> FindLayout(SQLite::Database& db,
   return found.front().id;
 }
 
-StoredLayout ReadLayout(SQLite::Database& db, std::int64_t id) {
-  SQLite::Statement row(
-      db,
-      "SELECT l.content_hash, l.added_at, l.rms_before_um, l.rms_after_um, l.name, f.text, "
-      "f.distribution, f.relative_motion, f.base, l.coordinates, l.drives, t.toml, t.content "
-      "FROM layout AS l JOIN formula AS f ON f.id = l.formula_id "
-      "JOIN layout_text AS t ON t.layout_id = l.id WHERE l.id = ?");
-  row.bind(1, id);
-  if (!row.executeStep())
+LayoutReader::LayoutReader(SQLite::Database& db)
+    : db_(db),
+      layout_(
+          db,
+          "SELECT l.content_hash, l.added_at, l.rms_before_um, l.rms_after_um, l.name, f.text, "
+          "f.distribution, f.relative_motion, f.base, l.coordinates, l.drives, t.toml, t.content, "
+          "l.provenance_id FROM layout AS l JOIN formula AS f ON f.id = l.formula_id "
+          "JOIN layout_text AS t ON t.layout_id = l.id WHERE l.id = ?"),
+      motion_(db,
+              "SELECT m.axis, m.side, m.working, m.block FROM motion AS m "
+              "JOIN layout AS l ON l.formula_id = m.formula_id WHERE l.id = ? ORDER BY m.position"),
+      block_(db,
+             "SELECT b.name, m.name, m.plugin FROM layout_block AS b JOIN module AS m "
+             "ON m.id = b.module_id WHERE b.layout_id = ? ORDER BY b.position"),
+      parameter_(
+          db,
+          "SELECT q.name, r.value, q.unit FROM parameter AS r "
+          "JOIN quantity AS q ON q.id = r.quantity_id WHERE r.layout_id = ? ORDER BY q.name"),
+      metric_(db,
+              "SELECT m.name, r.value, m.unit, m.method, r.failure FROM metric AS r "
+              "JOIN measure AS m ON m.id = r.measure_id "
+              "WHERE r.layout_id = ? ORDER BY m.name, m.unit, m.method"),
+      capability_(db,
+                  "SELECT t.text, r.detail FROM capability AS r JOIN term AS t ON t.id = r.name_id "
+                  "WHERE r.layout_id = ? ORDER BY t.text"),
+      calibration_(db,
+                   "SELECT measurements, measurements_hash, status, rms_before_um, rms_after_um, "
+                   "sigma_um, degrees_of_freedom, report FROM calibration WHERE layout_id = ? "
+                   "ORDER BY id") {}
+
+StoredLayout LayoutReader::ReadStructure(std::int64_t id) {
+  layout_.reset();
+  layout_.bind(1, id);
+  if (!layout_.executeStep())
     throw SQLite::Exception("a layout's text or formula is missing", SQLITE_CORRUPT);
   StoredLayout layout{.id = id,
-                      .hash = Hex(DigestAt(row, 0)),
-                      .added_at = row.getColumn(1).getString(),
-                      .rms_before_um = NumberAt(row, 2),
-                      .rms_after_um = NumberAt(row, 3),
+                      .hash = Hex(DigestAt(layout_, 0)),
+                      .added_at = layout_.getColumn(1).getString(),
+                      .rms_before_um = NumberAt(layout_, 2),
+                      .rms_after_um = NumberAt(layout_, 3),
                       .record = {}};
-  layout.record.name = row.getColumn(4).getString();
-  layout.record.formula = row.getColumn(5).getString();
-  layout.record.distribution = row.getColumn(6).getString();
-  layout.record.relative_motion = row.getColumn(7).getString();
-  layout.record.open_base = row.getColumn(8).getString() == "open";
-  layout.record.coordinates = row.getColumn(9).getInt();
-  layout.record.drives = row.getColumn(10).getInt();
-  layout.record.toml = row.getColumn(11).getString();
-  layout.record.content = row.getColumn(12).getString();
-  ReadMotions(db, layout);
-  ReadBlocks(db, layout);
-  ReadNumbers(db, layout);
-  ReadResults(db, layout);
-  ReadProvenance(db, layout);
+  LayoutRecord& record = layout.record;
+  record.name = layout_.getColumn(4).getString();
+  record.formula = layout_.getColumn(5).getString();
+  record.distribution = layout_.getColumn(6).getString();
+  record.relative_motion = layout_.getColumn(7).getString();
+  record.open_base = layout_.getColumn(8).getString() == "open";
+  record.coordinates = layout_.getColumn(9).getInt();
+  record.drives = layout_.getColumn(10).getInt();
+  record.toml = layout_.getColumn(11).getString();
+  record.content = layout_.getColumn(12).getString();
+  const std::int64_t provenance = layout_.getColumn(13).getInt64();
+  if (provenance != provenance_id_) {
+    provenance_ = ReadProvenance(db_, provenance);
+    provenance_id_ = provenance;
+  }
+  record.provenance = provenance_;
+  layout_.reset();
+  ReadBlocks(layout);
+  ReadParameters(layout);
   return layout;
+}
+
+StoredLayout LayoutReader::Read(std::int64_t id) {
+  StoredLayout layout = ReadStructure(id);
+  ReadMotions(layout);
+  ReadMetrics(layout);
+  ReadCapabilities(layout);
+  ReadCalibrations(layout);
+  return layout;
+}
+
+void LayoutReader::ReadMotions(StoredLayout& layout) {
+  motion_.reset();
+  motion_.bind(1, layout.id);
+  while (motion_.executeStep()) {
+    layout.record.motions.push_back(
+        {.axis = motion_.getColumn(0).getString(),
+         .side = motion_.getColumn(1).getString() == "workpiece" ? Side::kWorkpiece : Side::kTool,
+         .working = motion_.getColumn(2).getInt() != 0,
+         .block = motion_.getColumn(3).getString()});
+  }
+}
+
+void LayoutReader::ReadBlocks(StoredLayout& layout) {
+  block_.reset();
+  block_.bind(1, layout.id);
+  while (block_.executeStep()) {
+    layout.record.blocks.push_back({.name = block_.getColumn(0).getString(),
+                                    .module = block_.getColumn(1).getString(),
+                                    .plugin = block_.getColumn(2).getString()});
+  }
+}
+
+void LayoutReader::ReadParameters(StoredLayout& layout) {
+  parameter_.reset();
+  parameter_.bind(1, layout.id);
+  while (parameter_.executeStep()) {
+    layout.record.parameters.push_back({.name = parameter_.getColumn(0).getString(),
+                                        .value = parameter_.getColumn(1).getDouble(),
+                                        .unit = parameter_.getColumn(2).getString()});
+  }
+}
+
+void LayoutReader::ReadMetrics(StoredLayout& layout) {
+  metric_.reset();
+  metric_.bind(1, layout.id);
+  while (metric_.executeStep()) layout.record.metrics.push_back(MetricAt(metric_));
+}
+
+void LayoutReader::ReadCapabilities(StoredLayout& layout) {
+  capability_.reset();
+  capability_.bind(1, layout.id);
+  while (capability_.executeStep()) {
+    layout.record.capabilities.push_back({.name = capability_.getColumn(0).getString(),
+                                          .detail = capability_.getColumn(1).getString()});
+  }
+}
+
+void LayoutReader::ReadCalibrations(StoredLayout& layout) {
+  calibration_.reset();
+  calibration_.bind(1, layout.id);
+  while (calibration_.executeStep())
+    layout.record.calibrations.push_back(CalibrationAt(calibration_, 0));
+}
+
+Provenance ReadProvenance(SQLite::Database& db, std::int64_t id) {
+  SQLite::Statement row(
+      db, "SELECT program_version, source_path, source_hash FROM provenance WHERE id = ?");
+  row.bind(1, id);
+  Provenance provenance;
+  if (!row.executeStep()) return provenance;
+  provenance.program_version = row.getColumn(0).getString();
+  provenance.source_path = row.getColumn(1).getString();
+  provenance.source_sha256 = row.getColumn(2).getString();
+  SQLite::Statement plugin(
+      db, "SELECT plugin, version FROM provenance_plugin WHERE provenance_id = ? ORDER BY plugin");
+  plugin.bind(1, id);
+  while (plugin.executeStep()) {
+    provenance.plugins.push_back(
+        {.id = plugin.getColumn(0).getString(), .version = plugin.getColumn(1).getString()});
+  }
+  return provenance;
 }
 
 std::string ReadToml(SQLite::Database& db, std::int64_t id) {

@@ -22,12 +22,45 @@ namespace kompono::catalog {
                                               std::string_view key,
                                               const std::string& file);
 
-[[nodiscard]] StoredLayout ReadLayout(SQLite::Database& db, std::int64_t id);
+/// Layouts one after the other, with statements that are kept.
+class LayoutReader {
+ public:
+  explicit LayoutReader(SQLite::Database& db);
+
+  /// Name, formula, numbers and texts, blocks and parameters.
+  [[nodiscard]] StoredLayout ReadStructure(std::int64_t id);
+  /// All of it.
+  [[nodiscard]] StoredLayout Read(std::int64_t id);
+
+ private:
+  void ReadMotions(StoredLayout& layout);
+  void ReadBlocks(StoredLayout& layout);
+  void ReadParameters(StoredLayout& layout);
+  void ReadMetrics(StoredLayout& layout);
+  void ReadCapabilities(StoredLayout& layout);
+  void ReadCalibrations(StoredLayout& layout);
+
+  SQLite::Database& db_;
+  SQLite::Statement layout_;
+  SQLite::Statement motion_;
+  SQLite::Statement block_;
+  SQLite::Statement parameter_;
+  SQLite::Statement metric_;
+  SQLite::Statement capability_;
+  SQLite::Statement calibration_;
+  std::int64_t provenance_id_ = 0;  // of the layout before: most often the same again
+  Provenance provenance_;
+};
+
+[[nodiscard]] Provenance ReadProvenance(SQLite::Database& db, std::int64_t id);
 [[nodiscard]] std::string ReadToml(SQLite::Database& db, std::int64_t id);
 [[nodiscard]] std::vector<LayoutSummary> ReadList(SQLite::Database& db, const ListOptions& options);
 [[nodiscard]] Statistics ReadStatistics(SQLite::Database& db);
 
 [[nodiscard]] std::optional<double> NumberAt(SQLite::Statement& row, int column);
+
+/// Row selected as name, value, unit, method, failure.
+[[nodiscard]] Metric MetricAt(SQLite::Statement& row);
 
 /// A digest column; all zero if the file holds something else there.
 [[nodiscard]] Sha256 DigestAt(SQLite::Statement& row, int column);

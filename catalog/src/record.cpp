@@ -294,6 +294,12 @@ Sha256 ContentDigest(const Calibration& calibration) {
   return bytes.Digest();
 }
 
+std::int64_t KeyOf(const Sha256& digest) {
+  std::uint64_t key = 0;
+  for (std::size_t i = 0; i < 8; ++i) key = key << 8U | digest.at(i);
+  return static_cast<std::int64_t>(key);
+}
+
 std::string PluginText(const Provenance& provenance) {
   std::vector<std::string> plugins;
   for (const PluginVersion& plugin : provenance.plugins)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "csv.hpp"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -46,23 +47,6 @@ std::string ForPeople(const Value& value) {
   return "";
 }
 
-std::string CsvText(std::string_view text) {
-  if (!text.empty() && text.find_first_of(",\"\r\n") == std::string_view::npos &&
-      text.front() != ' ' && text.back() != ' ') {
-    return std::string(text);
-  }
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return field + "\"";
-}
-
-std::string CsvField(const Value& value) {
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
-  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{}", *real);
-  if (const auto* text = std::get_if<std::string>(&value)) return CsvText(*text);
-  return "";
-}
-
 nlohmann::ordered_json JsonValue(const Value& value) {
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return *integer;
   if (const auto* real = std::get_if<double>(&value)) {
@@ -84,6 +68,23 @@ std::string Line(const std::vector<std::string>& cells) {
 }
 
 }  // namespace
+
+std::string CsvText(std::string_view text) {
+  if (!text.empty() && text.find_first_of(",\"\r\n") == std::string_view::npos &&
+      text.front() != ' ' && text.back() != ' ') {
+    return std::string(text);
+  }
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
+std::string CsvField(const Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{}", *real);
+  if (const auto* text = std::get_if<std::string>(&value)) return CsvText(*text);
+  return "";
+}
 
 std::string RenderText(const Table& table) {
   const std::size_t count = table.columns.size();

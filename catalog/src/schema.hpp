@@ -19,14 +19,23 @@ namespace kompono::catalog {
 inline constexpr std::int32_t kApplicationId = 0x4B4F4D50;
 
 /// The public interface of the file; queries read these and nothing else.
-inline constexpr std::array<std::string_view, 8> kViews = {"layouts",
-                                                           "metrics",
-                                                           "parameters",
-                                                           "capabilities",
-                                                           "calibrations",
-                                                           "modules",
-                                                           "motions",
-                                                           "plugins"};
+inline constexpr std::array<std::string_view, 17> kViews = {"layouts",
+                                                            "metrics",
+                                                            "metric_values",
+                                                            "measures",
+                                                            "parameters",
+                                                            "capabilities",
+                                                            "calibrations",
+                                                            "measurements",
+                                                            "modules",
+                                                            "motions",
+                                                            "formulas",
+                                                            "plugins",
+                                                            "studies",
+                                                            "rules",
+                                                            "runs",
+                                                            "evaluations",
+                                                            "evaluation_metrics"};
 
 struct Migration {
   int version;

@@ -44,6 +44,27 @@ Statistics ReadStatistics(SQLite::Database& db) {
   s.metrics = CountOf(db, "SELECT count(*) FROM metric");
   s.failed_metrics = CountOf(db, "SELECT count(*) FROM metric WHERE value IS NULL");
   s.calibrations = CountOf(db, "SELECT count(*) FROM calibration");
+  const auto evaluations = [&db](const char* status) {
+    SQLite::Statement row(db,
+                          "SELECT count(*) FROM verdict AS v JOIN evaluation AS e "
+                          "ON e.verdict_id = v.id WHERE v.status = ?");
+    row.bind(1, status);
+    row.executeStep();
+    return row.getColumn(0).getInt64();
+  };
+  s.evaluations_ok = evaluations("ok");
+  s.evaluations_rejected = evaluations("rejected");
+  s.evaluations_failed = evaluations("failed");
+  s.evaluations = s.evaluations_ok + s.evaluations_rejected + s.evaluations_failed;
+  s.studies = CountsOf(db,
+                       "SELECT s.name, (SELECT coalesce(sum(r.past - r.begin), 0) FROM run_range "
+                       "AS r WHERE r.study_id = s.id) FROM study AS s ORDER BY s.name, s.id");
+  s.rejected =
+      CountsOf(db,
+               "SELECT v.stage || ': ' || v.reason, sum(e.n) AS n FROM verdict AS v JOIN (SELECT "
+               "verdict_id, "
+               "count(*) AS n FROM evaluation GROUP BY verdict_id) AS e ON e.verdict_id = v.id "
+               "WHERE v.status <> 'ok' GROUP BY 1 ORDER BY n DESC, 1 LIMIT 100");
   s.modules =
       CountsOf(db,
                "SELECT m.name, count(DISTINCT b.layout_id) AS n FROM layout_block AS b "
@@ -73,6 +94,12 @@ nlohmann::ordered_json ToJson(const Statistics& statistics) {
           {"metrics", statistics.metrics},
           {"failed_metrics", statistics.failed_metrics},
           {"calibrations", statistics.calibrations},
+          {"evaluations", statistics.evaluations},
+          {"evaluations_ok", statistics.evaluations_ok},
+          {"evaluations_rejected", statistics.evaluations_rejected},
+          {"evaluations_failed", statistics.evaluations_failed},
+          {"studies", CountsJson(statistics.studies)},
+          {"rejected", CountsJson(statistics.rejected)},
           {"modules", CountsJson(statistics.modules)},
           {"plugins", CountsJson(statistics.plugins)},
           {"programs", CountsJson(statistics.programs)}};

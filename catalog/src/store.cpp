@@ -1,82 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kompono/catalog/store.hpp"
 
-#include "failure.hpp"
-#include "guard.hpp"
-#include "opening.hpp"
+#include "exporting.hpp"
 #include "reading.hpp"
 #include "schema.hpp"
+#include "searching.hpp"
+#include "store_impl.hpp"
+#include "study_reading.hpp"
 #include "verifying.hpp"
-#include "writing.hpp"
 #include <SQLiteCpp/Transaction.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 namespace kompono::catalog {
-
-class Store::Impl {
- public:
-  Impl(std::filesystem::path file, Opened opened, OpenOptions how)
-      : path(std::move(file)),
-        options(how),
-        immutable(opened.immutable),
-        notes(std::move(opened.notes)),
-        db(std::move(opened.db)) {}
-
-  Parsed<std::vector<AddResult>> AddAll(std::span<const LayoutRecord> records, std::size_t chunk);
-  Parsed<Reader*> OpenReader();
-  [[nodiscard]] std::string Name() const { return path.string(); }
-
-  std::filesystem::path path;
-  OpenOptions options;
-  bool immutable;
-  Diagnostics notes;
-  std::unique_ptr<SQLite::Database> db;
-  std::unique_ptr<Writer> writer;  // made by the first Add, dropped by a rollback
-  std::unique_ptr<Reader> reader;  // made by the first Query; closed before db, which tidies up
-};
-
-Parsed<std::vector<AddResult>> Store::Impl::AddAll(std::span<const LayoutRecord> records,
-                                                   std::size_t chunk) {
-  if (options.mode == OpenMode::kReadOnly) {
-    return Refuse("E0502", Name(), "the catalog was opened for reading only");
-  }
-  Diagnostics unfit;
-  for (const LayoutRecord& record : records) {
-    Diagnostics found = Check(record);
-    std::move(found.begin(), found.end(), std::back_inserter(unfit));
-  }
-  if (!unfit.empty()) return tl::make_unexpected(std::move(unfit));
-
-  std::vector<AddResult> results;
-  results.reserve(records.size());
-  std::size_t kept = 0;
-  auto outcome = Guarded(Name(), [&]() -> Parsed<std::size_t> {
-    if (!writer) writer = std::make_unique<Writer>(*db);
-    const std::size_t step = chunk == 0 ? std::max<std::size_t>(1, records.size()) : chunk;
-    for (std::size_t begin = 0; begin < records.size(); begin += step) {
-      SQLite::Transaction transaction(*db, SQLite::TransactionBehavior::IMMEDIATE);
-      writer->Begin();
-      for (const LayoutRecord& record :
-           records.subspan(begin, std::min(step, records.size() - begin))) {
-        results.push_back(writer->Add(record));
-      }
-      transaction.commit();
-      kept = results.size();
-    }
-    return kept;
-  });
-  if (!outcome) {
-    writer.reset();
-    for (Diagnostic& diagnostic : outcome.error()) {
-      diagnostic.message += fmt::format("; {} of {} layouts are stored", kept, records.size());
-    }
-    return tl::make_unexpected(std::move(outcome.error()));
-  }
-  return results;
-}
 
 Parsed<Reader*> Store::Impl::OpenReader() {
   if (!reader) {
@@ -115,12 +52,83 @@ Parsed<std::vector<AddResult>> Store::AddAll(std::span<const LayoutRecord> recor
   return impl_->AddAll(records, options.layouts_per_transaction);
 }
 
+Diagnostics Store::BeginBulk() {
+  auto outcome = Guarded(impl_->Name(), [&]() -> Parsed<bool> {
+    catalog::BeginBulk(*impl_->db);
+    return true;
+  });
+  return outcome ? Diagnostics{} : std::move(outcome.error());
+}
+
+Diagnostics Store::EndBulk() {
+  auto outcome = Guarded(impl_->Name(), [&]() -> Parsed<bool> {
+    catalog::EndBulk(*impl_->db);
+    return true;
+  });
+  return outcome ? Diagnostics{} : std::move(outcome.error());
+}
+
+Parsed<std::int64_t> Store::BeginStudy(const StudyRecord& study) {
+  if (Diagnostics unfit = Check(study); !unfit.empty())
+    return tl::make_unexpected(std::move(unfit));
+  return impl_->Writing([&]() -> Parsed<std::int64_t> { return impl_->studies->Begin(study).id; });
+}
+
+Parsed<AppendResult> Store::AppendChunk(std::int64_t study,
+                                        const IndexRange& range,
+                                        std::span<const EvaluationRecord> records) {
+  return impl_->Append(study, range, records, nullptr);
+}
+
+Parsed<std::vector<IndexRange>> Store::MissingRanges(std::int64_t study,
+                                                     const IndexRange& whole) const {
+  return Guarded(impl_->Name(), [&]() -> Parsed<std::vector<IndexRange>> {
+    const SQLite::Transaction snapshot(*impl_->db);
+    if (!CandidatesOf(*impl_->db, study))
+      return Refuse("E0541", impl_->Name(), fmt::format("there is no study {}", study));
+    return catalog::MissingRanges(*impl_->db, study, whole);
+  });
+}
+
+Parsed<std::vector<EvaluationRecord>> Store::Evaluations(std::int64_t study,
+                                                         const IndexRange& range,
+                                                         bool with_layouts) const {
+  return Guarded(impl_->Name(), [&]() -> Parsed<std::vector<EvaluationRecord>> {
+    const SQLite::Transaction snapshot(*impl_->db);
+    if (!CandidatesOf(*impl_->db, study))
+      return Refuse("E0541", impl_->Name(), fmt::format("there is no study {}", study));
+    using Layouts = EvaluationReader::Layouts;
+    EvaluationReader reader(*impl_->db, with_layouts ? Layouts::kStructure : Layouts::kNone);
+    reader.Start(study, range);
+    std::vector<EvaluationRecord> evaluations;
+    for (EvaluationRecord record; reader.Next(record);) evaluations.push_back(record);
+    return evaluations;
+  });
+}
+
+Parsed<std::vector<StudySummary>> Store::Studies() const {
+  return Guarded(impl_->Name(), [&]() -> Parsed<std::vector<StudySummary>> {
+    const SQLite::Transaction snapshot(*impl_->db);
+    return ReadStudies(*impl_->db);
+  });
+}
+
+Parsed<MergeResult> Store::Merge(const Store& other) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(impl_->path, other.impl_->path, ignored))
+    return Refuse("E0549", impl_->Name(), "a catalog cannot be merged into itself");
+  return Guarded(other.impl_->Name(), [&]() -> Parsed<MergeResult> {
+    const SQLite::Transaction snapshot(*other.impl_->db);
+    return impl_->Merge(*other.impl_->db);
+  });
+}
+
 Parsed<StoredLayout> Store::Show(std::string_view key) const {
   return Guarded(impl_->Name(), [&]() -> Parsed<StoredLayout> {
     // One transaction, so that all tables are read as of one moment.
-    SQLite::Transaction snapshot(*impl_->db);
+    const SQLite::Transaction snapshot(*impl_->db);
     return FindLayout(*impl_->db, key, impl_->Name()).map([&](std::int64_t id) {
-      return ReadLayout(*impl_->db, id);
+      return LayoutReader(*impl_->db).Read(id);
     });
   });
 }
@@ -150,6 +158,30 @@ Parsed<Statistics> Store::Stats() const {
 Parsed<VerifyReport> Store::Verify() const {
   return Guarded(impl_->Name(), [&]() -> Parsed<VerifyReport> {
     return VerifyCatalog(*impl_->db, impl_->Name());
+  });
+}
+
+Parsed<std::vector<SearchHit>> Store::Search(std::string_view text, std::int64_t limit) const {
+  return Guarded(impl_->Name(), [&]() -> Parsed<std::vector<SearchHit>> {
+    const SQLite::Transaction snapshot(*impl_->db);
+    return SearchWords(*impl_->db, text, limit);
+  });
+}
+
+Parsed<std::vector<SimilarLayout>> Store::Similar(std::string_view key, std::int64_t limit) const {
+  return Guarded(impl_->Name(), [&]() -> Parsed<std::vector<SimilarLayout>> {
+    const SQLite::Transaction snapshot(*impl_->db);
+    return FindLayout(*impl_->db, key, impl_->Name()).map([&](std::int64_t id) {
+      return SearchSimilar(*impl_->db, id, limit);
+    });
+  });
+}
+
+Parsed<ExportSummary> Store::ExportAll(ExportFormat format,
+                                       const std::filesystem::path& out) const {
+  return Guarded(impl_->Name(), [&]() -> Parsed<ExportSummary> {
+    const SQLite::Transaction snapshot(*impl_->db);
+    return ExportCatalog(*impl_->db, format, out);
   });
 }
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verifying.hpp"
 
+#include "bulk.hpp"
 #include "failure.hpp"
 #include "reading.hpp"
 #include "record_parts.hpp"
 #include "schema.hpp"
+#include "study_reading.hpp"
+#include "words.hpp"
 #include <SQLiteCpp/Statement.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -56,7 +60,7 @@ class Verifier {
     for (const auto& [name, sql] : expected) {
       const auto found = actual.find(name);
       if (found == actual.end()) {
-        Found("E0534", fmt::format("{} is missing", name));
+        if (!Deferred(name)) Found("E0534", fmt::format("{} is missing", name));
       } else if (found->second != sql) {
         Found("E0534", fmt::format("{} is not as this program made it", name));
       }
@@ -68,7 +72,7 @@ class Verifier {
   }
 
   void Layouts() {
-    SQLite::Statement ids(db_, "SELECT id, content_hash, name FROM layout ORDER BY id");
+    SQLite::Statement ids(db_, "SELECT id, content_hash, name, hash_key FROM layout ORDER BY id");
     SQLite::Statement texts(db_,
                             "SELECT f.text, t.toml, t.content FROM layout AS l JOIN formula AS f "
                             "ON f.id = l.formula_id "
@@ -107,7 +111,8 @@ class Verifier {
                                      .unit = parameters.getColumn(2).getString()});
       }
       parameters.reset();
-      if (ContentDigest(record) != DigestAt(ids, 1)) {
+      const Sha256 digest = ContentDigest(record);
+      if (digest != DigestAt(ids, 1) || KeyOf(digest) != ids.getColumn(3).getInt64()) {
         Found("E0532",
               fmt::format(
                   "layout {} '{}' is not what its hash says: it was changed after it was added",
@@ -145,9 +150,100 @@ class Verifier {
     }
   }
 
+  void Studies() {
+    SQLite::Statement study(db_, "SELECT id, content_hash, name FROM study ORDER BY id");
+    while (study.executeStep()) {
+      const std::int64_t id = study.getColumn(0).getInt64();
+      const std::string name = study.getColumn(2).getString();
+      const StudyRecord record = ReadStudy(db_, id);
+      if (ContentDigest(record) != DigestAt(study, 1)) {
+        Found("E0545",
+              fmt::format(
+                  "study {} '{}' is not what its hash says: it was changed after it was added",
+                  id,
+                  name));
+      }
+      Evaluations(id, name, record.candidates);
+    }
+  }
+
+  /// A layout or study that was changed has other words too, which was told.
+  void Words() {
+    const bool told = std::any_of(
+        report_.findings.begin(), report_.findings.end(), [](const Diagnostic& finding) {
+          return finding.code == "E0532" || finding.code == "E0545";
+        });
+    if (told) return;
+    SQLite::Statement wrong(
+        db_,
+        fmt::format("SELECT count(*) FROM (SELECT rowid, name, formula, parts, text FROM word "
+                    "EXCEPT SELECT * FROM ({} UNION ALL {}))",
+                    kWordsOfLayouts,
+                    kWordsOfStudies));
+    wrong.executeStep();
+    const std::int64_t stale = wrong.getColumn(0).getInt64();
+    const std::int64_t lost =
+        db_.execAndGet(
+               "SELECT (SELECT count(*) FROM study AS s WHERE NOT EXISTS (SELECT 1 FROM word WHERE "
+               "rowid = 2 * s.id + 1)) + (SELECT count(*) FROM layout AS l WHERE NOT EXISTS "
+               "(SELECT 1 FROM evaluation AS e WHERE e.layout_id = l.id) AND NOT EXISTS "
+               "(SELECT 1 FROM word WHERE rowid = 2 * l.id))")
+            .getInt64();
+    if (stale + lost > 0) {
+      Found("E0547", fmt::format("full-text search has {} wrong and lacks {}", stale, lost));
+    }
+  }
+
   [[nodiscard]] VerifyReport Take() { return std::move(report_); }
 
  private:
+  /// A load in bulk that goes on, or was cut short, leaves these out.
+  bool Deferred(const std::string& name) {
+    return BulkLoading(db_) && std::any_of(kDeferredIndexes.begin(),
+                                           kDeferredIndexes.end(),
+                                           [&name](const DeferredIndex& index) {
+                                             return name == fmt::format("index {}", index.name);
+                                           });
+  }
+
+  /// Every candidate that is done has its row, no other has one, and no range covers another.
+  void Evaluations(std::int64_t study, const std::string& name, std::int64_t candidates) {
+    const auto hole = [&](std::string_view what, std::int64_t candidate) {
+      Found("E0546", fmt::format("study {} '{}': candidate {} {}", study, name, candidate, what));
+    };
+    SQLite::Statement rows(db_,
+                           "SELECT count(*), coalesce(min(candidate), -1) FROM evaluation WHERE "
+                           "study_id = ? AND candidate >= ? AND candidate < ?");
+    std::int64_t in_ranges = 0;
+    std::int64_t past = 0;
+    for (const RangeOfRun& run : ReadRuns(db_, study)) {
+      if (run.range.begin < past) hole("was done twice", run.range.begin);
+      past = run.range.end;
+      rows.reset();
+      rows.bind(1, study);
+      rows.bind(2, run.range.begin);
+      rows.bind(3, run.range.end);
+      rows.executeStep();
+      const std::int64_t count = rows.getColumn(0).getInt64();
+      if (count != run.range.size())
+        hole("is in a range that is done but not complete", run.range.begin);
+      in_ranges += count;
+    }
+    if (past > candidates) hole("is outside the study", past - 1);
+    SQLite::Statement all(db_, "SELECT count(*) FROM evaluation WHERE study_id = ?");
+    all.bind(1, study);
+    all.executeStep();
+    const std::int64_t count = all.getColumn(0).getInt64();
+    report_.evaluations += count;
+    if (count != in_ranges) {
+      Found("E0546",
+            fmt::format("study {} '{}' has {} evaluations of candidates that are not done",
+                        study,
+                        name,
+                        count - in_ranges));
+    }
+  }
+
   void Found(std::string code, std::string message) {
     report_.findings.push_back(Complaint(std::move(code), file_, std::move(message)));
   }
@@ -166,6 +262,8 @@ VerifyReport VerifyCatalog(SQLite::Database& db, const std::string& file) {
   verifier.Tables();
   verifier.Layouts();
   verifier.Calibrations();
+  verifier.Studies();
+  verifier.Words();
   return verifier.Take();
 }
 

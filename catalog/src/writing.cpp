@@ -3,6 +3,9 @@
 
 #include "record_parts.hpp"
 #include "schema.hpp"
+#include "structure.hpp"
+#include "words.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -49,12 +52,14 @@ Dictionary::Entry Dictionary::Find(std::span<const std::string_view> columns) {
 
 Writer::Writer(SQLite::Database& db)
     : db_(db),
+      hashes_(db),
       formulas_(
           db,
           "INSERT INTO formula(text, distribution, relative_motion, base) VALUES(?1, ?2, ?3, ?4) "
           "ON CONFLICT(text) DO UPDATE SET distribution = ?2, relative_motion = ?3, base = ?4 "
           "WHERE distribution IS NOT ?2 OR relative_motion IS NOT ?3 OR base IS NOT ?4",
           "SELECT id FROM formula WHERE text = ?1"),
+      formula_texts_(db, "SELECT id FROM formula WHERE text = ?1"),
       provenances_(db,
                    "INSERT INTO provenance(source_hash, source_path, program_version, plugins) "
                    "VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO NOTHING",
@@ -66,17 +71,19 @@ Writer::Writer(SQLite::Database& db)
       quantities_(db,
                   "INSERT INTO quantity(name, unit) VALUES(?1, ?2) ON CONFLICT DO NOTHING",
                   "SELECT id FROM quantity WHERE name = ?1 AND unit = ?2"),
+      measures_(db,
+                "INSERT INTO measure(name, unit, method) VALUES(?1, ?2, ?3) ON CONFLICT DO NOTHING",
+                "SELECT id FROM measure WHERE name = ?1 AND unit = ?2 AND method = ?3"),
       terms_(db,
              "INSERT INTO term(text) VALUES(?1) ON CONFLICT DO NOTHING",
              "SELECT id FROM term WHERE text = ?1"),
+      tree_(db, "UPDATE formula SET tree = ?2 WHERE id = ?1"),
       clear_motions_(db, "DELETE FROM motion WHERE formula_id = ?"),
       motion_(db, "INSERT INTO motion VALUES(?, ?, ?, ?, ?, ?)"),
       plugin_(db, "INSERT INTO provenance_plugin VALUES(?, ?, ?)"),
       layout_(db,
-              "INSERT INTO layout(content_hash, name, formula_id, coordinates, drives, "
-              "provenance_id, added_at) "
-              "VALUES(?, ?, ?, ?, ?, ?, ?) ON CONFLICT(content_hash) DO NOTHING"),
-      find_layout_(db, "SELECT id FROM layout WHERE content_hash = ?"),
+              "INSERT INTO layout(hash_key, content_hash, name, formula_id, coordinates, drives, "
+              "provenance_id, added_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?)"),
       text_(db, "INSERT INTO layout_text VALUES(?, ?, ?)"),
       refresh_derived_(db,
                        "UPDATE layout SET coordinates = ?2, drives = ?3 WHERE id = ?1 "
@@ -85,10 +92,10 @@ Writer::Writer(SQLite::Database& db)
       refresh_provenance_(db, "UPDATE layout SET provenance_id = ?2 WHERE id = ?1"),
       block_(db, "INSERT INTO layout_block VALUES(?, ?, ?, ?)"),
       parameter_(db, "INSERT INTO parameter VALUES(?, ?, ?)"),
-      metric_(
-          db,
-          "INSERT INTO metric VALUES(?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT DO UPDATE SET value = ?4, "
-          "failure = ?5, provenance_id = ?6 WHERE value IS NOT ?4 OR failure IS NOT ?5"),
+      metric_(db,
+              "INSERT INTO metric VALUES(?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET value = ?3, "
+              "failure = ?4, provenance_id = ?5 WHERE value IS NOT ?3 OR failure IS NOT ?4"),
+      fresh_metric_(db, "INSERT INTO metric VALUES(?, ?, ?, ?, ?)"),
       capability_(
           db,
           "INSERT INTO capability VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET detail = ?3, "
@@ -98,7 +105,12 @@ Writer::Writer(SQLite::Database& db)
                    "measurements_hash, status, "
                    "rms_before_um, rms_after_um, sigma_um, degrees_of_freedom, provenance_id, "
                    "added_at, report) "
-                   "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING") {}
+                   "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"),
+      has_words_(db, "SELECT count(*) FROM word WHERE rowid = 2 * ?1"),
+      clear_words_(db, "DELETE FROM word WHERE rowid = 2 * ?1"),
+      words_(db,
+             fmt::format("INSERT INTO word(rowid, name, formula, parts, text) {} WHERE l.id = ?1",
+                         kWordsOfLayouts)) {}
 
 std::int64_t Writer::TermOf(std::string_view text) {
   return terms_.Find(std::array{text}).id;
@@ -108,17 +120,46 @@ std::int64_t Writer::QuantityOf(std::string_view name, std::string_view unit) {
   return quantities_.Find(std::array{name, unit}).id;
 }
 
+std::int64_t Writer::MeasureOf(const Metric& metric) {
+  return measures_.Find(std::array<std::string_view, 3>{metric.name, metric.unit, metric.method})
+      .id;
+}
+
 std::int64_t Writer::FormulaOf(const LayoutRecord& record) {
+  if (record.distribution.empty() && record.relative_motion.empty() && record.motions.empty())
+    return FormulaOf(record.formula);
   const std::array<std::string_view, 4> columns{record.formula,
                                                 record.distribution,
                                                 record.relative_motion,
                                                 record.open_base ? "open" : "closed"};
   const Dictionary::Entry entry = formulas_.Find(columns);
-  if (!entry.written) return entry.id;
-  clear_motions_.Integer(entry.id).Run();
+  if (entry.written) FillFormula(entry.id, record.formula, record.motions);
+  return entry.id;
+}
+
+std::int64_t Writer::FormulaOf(const std::string& text) {
+  if (const auto known = known_texts_.find(text); known != known_texts_.end()) return known->second;
+  std::optional<std::int64_t> id = formula_texts_.Text(text).Look();
+  if (!id) {
+    const FormulaFacts facts = FactsOf(text);
+    const std::array<std::string_view, 4> columns{
+        text, facts.distribution, facts.relative_motion, facts.open_base ? "open" : "closed"};
+    id = formulas_.Find(columns).id;
+    FillFormula(*id, text, facts.motions);
+  }
+  known_texts_.emplace(text, *id);
+  return *id;
+}
+
+void Writer::FillFormula(std::int64_t id,
+                         const std::string& text,
+                         std::span<const Motion> motions) {
+  const std::string tree = TreeJson(text);
+  tree_.Integer(id).TextOrNull(tree).Run();
+  clear_motions_.Integer(id).Run();
   std::int64_t position = 0;
-  for (const Motion& motion : record.motions) {
-    motion_.Integer(entry.id)
+  for (const Motion& motion : motions) {
+    motion_.Integer(id)
         .Integer(position++)
         .Text(motion.axis)
         .Text(motion.side == Side::kWorkpiece ? "workpiece" : "tool")
@@ -126,14 +167,12 @@ std::int64_t Writer::FormulaOf(const LayoutRecord& record) {
         .Text(motion.block)
         .Run();
   }
-  return entry.id;
 }
 
-std::int64_t Writer::ProvenanceOf(const LayoutRecord& record) {
-  const Provenance& provenance = record.provenance;
+std::int64_t Writer::ProvenanceOf(const Provenance& provenance, std::string_view text) {
   if (run_ && !provenance.source_sha256.empty() && Same(*run_, provenance)) return run_id_;
   const std::optional<Sha256> given = Sha256FromHex(provenance.source_sha256);
-  const std::string source = Hex(given ? *given : Sha256Of(record.toml));
+  const std::string source = Hex(given ? *given : Sha256Of(text));
   const std::string plugins = PluginText(provenance);
   const std::array<std::string_view, 4> columns{source,
                                                 provenance.source_path,
@@ -151,31 +190,60 @@ std::int64_t Writer::ProvenanceOf(const LayoutRecord& record) {
   return entry.id;
 }
 
-void Writer::Begin() {
+void Writer::Begin(bool bulk) {
   now_ = Now();
+  hashes_.Begin(bulk);
 }
 
 AddResult Writer::Add(const LayoutRecord& record) {
+  const std::int64_t provenance = ProvenanceOf(record.provenance, record.toml);
+  const AddResult result = Put(record, record.metrics, provenance);
+  const bool fresh = result.status == AddStatus::kAdded;
+  const bool words =
+      fresh || result.status == AddStatus::kUpdated || has_words_.Integer(result.id).Ask() == 0;
+  if (words) RefreshWords(result.id, fresh);
+  return result;
+}
+
+AddResult Writer::AddOfStudy(const LayoutRecord& record,
+                             std::span<const Metric> metrics,
+                             std::int64_t provenance) {
+  return Put(record, metrics, provenance);
+}
+
+AddResult Writer::Put(const LayoutRecord& record,
+                      std::span<const Metric> metrics,
+                      std::int64_t provenance) {
   const Sha256 digest = ContentDigest(record);
-  const std::int64_t provenance = ProvenanceOf(record);
   const std::int64_t formula = FormulaOf(record);
-  layout_.Digest(digest).Text(record.name).Integer(formula).Integer(record.coordinates);
-  layout_.Integer(record.drives).Integer(provenance).Text(now_);
   AddResult result;
-  if (layout_.Run() > 0) {
-    result.id = db_.getLastInsertRowid();
-    AddStructure(result.id, record);
-    AddResults(result.id, record, provenance);
-    AddCalibrations(result.id, record, provenance);
+  if (const std::optional<std::int64_t> found = hashes_.Find(digest)) {
+    result.id = *found;
+    int changed = RefreshDerived(result.id, record);
+    changed += RefreshText(result.id, record, provenance);
+    changed += AddMetrics(result.id, metrics, provenance);
+    changed += AddCapabilities(result.id, record, provenance);
+    changed += AddCalibrations(result.id, record, provenance);
+    result.status = changed > 0 ? AddStatus::kUpdated : AddStatus::kUnchanged;
     return result;
   }
-  result.id = find_layout_.Digest(digest).Ask();
-  int changed = RefreshDerived(result.id, record);
-  changed += RefreshText(result.id, record, provenance);
-  changed += AddResults(result.id, record, provenance);
-  changed += AddCalibrations(result.id, record, provenance);
-  result.status = changed > 0 ? AddStatus::kUpdated : AddStatus::kUnchanged;
+  layout_.Integer(KeyOf(digest)).Digest(digest).Text(record.name).Integer(formula);
+  layout_.Integer(record.coordinates).Integer(record.drives).Integer(provenance).Text(now_).Run();
+  result.id = db_.getLastInsertRowid();
+  hashes_.Added(digest, result.id);
+  AddStructure(result.id, record);
+  for (const Metric& metric : metrics) {
+    fresh_metric_.Integer(result.id).Integer(MeasureOf(metric)).RealOrNull(metric.value);
+    fresh_metric_.TextOrNull(metric.failure).Integer(provenance).Run();
+  }
+  AddCapabilities(result.id, record, provenance);
+  AddCalibrations(result.id, record, provenance);
   return result;
+}
+
+void Writer::RefreshWords(std::int64_t layout, bool fresh) {
+  if (!fresh) clear_words_.Integer(layout).Run();
+  words_.Integer(layout).Run();
 }
 
 void Writer::AddStructure(std::int64_t layout, const LayoutRecord& record) {
@@ -203,14 +271,22 @@ int Writer::RefreshText(std::int64_t layout, const LayoutRecord& record, std::in
   return refresh_provenance_.Integer(layout).Integer(provenance).Run();
 }
 
-int Writer::AddResults(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance) {
+int Writer::AddMetrics(std::int64_t layout,
+                       std::span<const Metric> metrics,
+                       std::int64_t provenance) {
   int changed = 0;
-  for (const Metric& metric : record.metrics) {
-    const std::int64_t quantity = QuantityOf(metric.name, metric.unit);
-    const std::int64_t method = TermOf(metric.method);
-    metric_.Integer(layout).Integer(quantity).Integer(method).RealOrNull(metric.value);
+  for (const Metric& metric : metrics) {
+    const std::int64_t measure = MeasureOf(metric);
+    metric_.Integer(layout).Integer(measure).RealOrNull(metric.value);
     changed += metric_.TextOrNull(metric.failure).Integer(provenance).Run();
   }
+  return changed;
+}
+
+int Writer::AddCapabilities(std::int64_t layout,
+                            const LayoutRecord& record,
+                            std::int64_t provenance) {
+  int changed = 0;
   for (const Capability& capability : record.capabilities) {
     const std::int64_t name = TermOf(capability.name);
     changed +=

@@ -3,6 +3,7 @@
 #define KOMPONO_CATALOG_SRC_WRITING_HPP_
 
 #include "command.hpp"
+#include "hash_lookup.hpp"
 #include <SQLiteCpp/Database.h>
 
 #include <cstdint>
@@ -44,35 +45,56 @@ class Writer {
  public:
   explicit Writer(SQLite::Database& db);
 
-  /// To be called after the transaction was begun.
-  void Begin();
+  /// To be called after the transaction was begun; `bulk`: the index of the hashes may be missing.
+  void Begin(bool bulk);
+  /// With the words of the layout for full-text search.
   AddResult Add(const LayoutRecord& record);
+  /// The layout and its results without words; `metrics` instead of its own.
+  AddResult AddOfStudy(const LayoutRecord& record,
+                       std::span<const Metric> metrics,
+                       std::int64_t provenance);
+
+  /// For `Add` the source's hash is that of the layout file if the record gives none.
+  std::int64_t ProvenanceOf(const Provenance& provenance, std::string_view text);
+  /// Of a formula known by its text only: the rest follows from it.
+  std::int64_t FormulaOf(const std::string& text);
+  std::int64_t FormulaOf(const LayoutRecord& record);
+  std::int64_t MeasureOf(const Metric& metric);
+  [[nodiscard]] const std::string& Moment() const { return now_; }
 
  private:
-  std::int64_t FormulaOf(const LayoutRecord& record);
-  std::int64_t ProvenanceOf(const LayoutRecord& record);
+  AddResult Put(const LayoutRecord& record,
+                std::span<const Metric> metrics,
+                std::int64_t provenance);
   std::int64_t TermOf(std::string_view text);
   std::int64_t QuantityOf(std::string_view name, std::string_view unit);
+  void FillFormula(std::int64_t id, const std::string& text, std::span<const Motion> motions);
   void AddStructure(std::int64_t layout, const LayoutRecord& record);
   int RefreshDerived(std::int64_t layout, const LayoutRecord& record);
   int RefreshText(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
-  int AddResults(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
+  int AddMetrics(std::int64_t layout, std::span<const Metric> metrics, std::int64_t provenance);
+  int AddCapabilities(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
   int AddCalibrations(std::int64_t layout, const LayoutRecord& record, std::int64_t provenance);
+  void RefreshWords(std::int64_t layout, bool fresh);
 
   SQLite::Database& db_;
   std::string now_;                // one moment for all rows of a transaction
   std::optional<Provenance> run_;  // of the record before: most often the same again
   std::int64_t run_id_ = 0;
+  HashLookup hashes_;
   Dictionary formulas_;
+  std::unordered_map<std::string, std::int64_t> known_texts_;
+  Command formula_texts_;
   Dictionary provenances_;
   Dictionary modules_;
   Dictionary quantities_;
+  Dictionary measures_;
   Dictionary terms_;
+  Command tree_;
   Command clear_motions_;
   Command motion_;
   Command plugin_;
   Command layout_;
-  Command find_layout_;
   Command text_;
   Command refresh_derived_;
   Command refresh_text_;
@@ -80,8 +102,12 @@ class Writer {
   Command block_;
   Command parameter_;
   Command metric_;
+  Command fresh_metric_;
   Command capability_;
   Command calibration_;
+  Command has_words_;
+  Command clear_words_;
+  Command words_;
 };
 
 }  // namespace kompono::catalog

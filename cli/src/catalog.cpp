@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <memory>
 
 #include "kompono/catalog/query.hpp"
@@ -33,23 +34,33 @@ constexpr const char* kQueryExamples =
     "  kompono catalog query machines.db                                      all layouts\n"
     "  kompono catalog query machines.db \"rms_after_um < 100 and formula like '%(XY)%'\"\n"
     "  kompono catalog query machines.db \"drives > 3\" --sort 'name desc' --limit 5 --csv\n"
-    "  kompono catalog query machines.db \"base = 'open'\" --columns 'name, drives' --json";
+    "  kompono catalog query machines.db \"base = 'open'\" --columns 'name, drives' --json\n"
+    "  kompono catalog query machines.db \"metric.singularity_margin > 0.1 and drives < 6\"";
 constexpr const char* kShowExamples =
     "  kompono catalog show machines.db 'Knee mill'     by name\n"
     "  kompono catalog show machines.db 3fa9c1          by hash, or by number";
 constexpr const char* kExportExamples =
     "  kompono catalog export machines.db 3fa9c1 -o lambda.toml     the layout file as it was "
-    "added";
+    "added\n"
+    "  kompono catalog export machines.db --as json -o all.json     everything, in a fixed order\n"
+    "  kompono catalog export machines.db --as csv -o tables        one table per file\n"
+    "  kompono catalog export machines.db --as toml -o layouts      one layout per file";
+constexpr const char* kSearchExamples =
+    "  kompono catalog search machines.db 'water jet'   layouts and studies with both words\n"
+    "  kompono catalog search machines.db 'hexa*'       and with all that begin so";
+constexpr const char* kSimilarExamples =
+    "  kompono catalog similar machines.db 'Knee mill'  structures like this one";
 constexpr const char* kStatsExamples =
     "  kompono catalog stats machines.db                how many of what";
 constexpr const char* kVerifyExamples =
     "  kompono catalog verify machines.db               damage, changes by hand, wrong hashes";
 constexpr const char* kMergeExamples =
-    "  kompono catalog merge all.db mine.db yours.db    layouts of several catalogs into one";
+    "  kompono catalog merge all.db mine.db yours.db    layouts and studies of several into one";
 
 struct Options {
-  std::string db, key, out, where, sort, columns, report;
+  std::string db, key, out, where, sort, columns, report, as;
   std::vector<std::string> files;
+  std::int64_t most = 20;
   std::int64_t limit = 1000;
   bool csv = false;
   bool force = false;
@@ -75,6 +86,35 @@ std::optional<Store> Open(Session& session, const std::string& db, OpenMode mode
   }
   session.console.Report(store->Notes());
   return std::move(*store);
+}
+
+/// A catalog from elsewhere must not steer the terminal or break the table.
+std::string OneLine(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7F) {
+      line += c;
+    } else if (!line.empty() && line.back() != ' ') {
+      line += ' ';
+    }
+  }
+  return line;
+}
+
+ExitCode Found(const Session& session,
+               const char* name,
+               ordered_json list,
+               const TextTable& table) {
+  const bool nothing = list.empty();
+  if (session.json) {
+    session.console.Json({{name, std::move(list)}});
+  } else if (!nothing) {
+    session.console.Out(table.Render());
+  }
+  if (!nothing) return ExitCode::kOk;
+  session.console.Say("nothing found");
+  return ExitCode::kNegative;
 }
 
 struct Named {
@@ -141,20 +181,44 @@ ExitCode Add(Session& session, const Options& options) {
 }
 
 ExitCode Merge(Session& session, const Options& options) {
-  std::vector<Named> named;
+  ExitCode code = ExitCode::kOk;
+  std::optional<Store> store = Open(session, options.db, OpenMode::kCreate, code);
+  if (!store) return code;
+  ordered_json list = ordered_json::array();
+  TextTable table({{"from"},
+                   {"added", true},
+                   {"updated", true},
+                   {"unchanged", true},
+                   {"studies", true},
+                   {"evaluations", true},
+                   {"known", true}});
   for (const std::string& file : options.files) {
-    ExitCode code = ExitCode::kOk;
-    const auto store = Open(session, file, OpenMode::kReadOnly, code);
-    if (!store) return code;
-    const auto list = store->List({.limit = 0});
-    if (!list) return session.Refuse(list.error());
-    for (const catalog::LayoutSummary& summary : *list) {
-      const auto layout = store->Show(summary.hash);
-      if (!layout) return session.Refuse(layout.error());
-      named.push_back({.from = file, .record = layout->record});
-    }
+    session.console.Progress(file);
+    const auto other = Open(session, file, OpenMode::kReadOnly, code);
+    if (!other) return code;
+    const auto merged = store->Merge(*other);
+    if (!merged) return session.Refuse(merged.error());
+    list.push_back({{"from", file},
+                    {"layouts_added", merged->layouts_added},
+                    {"layouts_updated", merged->layouts_updated},
+                    {"layouts_unchanged", merged->layouts_unchanged},
+                    {"studies_added", merged->studies_added},
+                    {"evaluations_written", merged->evaluations_written},
+                    {"evaluations_skipped", merged->evaluations_skipped}});
+    table.Row({file,
+               std::to_string(merged->layouts_added),
+               std::to_string(merged->layouts_updated),
+               std::to_string(merged->layouts_unchanged),
+               std::to_string(merged->studies_added),
+               std::to_string(merged->evaluations_written),
+               std::to_string(merged->evaluations_skipped)});
   }
-  return AddRecords(session, options.db, named);
+  if (session.json) {
+    session.console.Json({{"merged", std::move(list)}});
+  } else {
+    session.console.Out(table.Render());
+  }
+  return ExitCode::kOk;
 }
 
 ExitCode Query(Session& session, const Options& options) {
@@ -240,7 +304,7 @@ ExitCode Show(Session& session, const Options& options) {
   return ExitCode::kOk;
 }
 
-ExitCode Export(Session& session, const Options& options) {
+ExitCode ExportOne(Session& session, const Options& options) {
   if (const auto exists = RefuseToOverwrite(options.out, options.force))
     return session.Refuse(*exists);
   ExitCode code = ExitCode::kOk;
@@ -262,6 +326,94 @@ ExitCode Export(Session& session, const Options& options) {
   return ExitCode::kOk;
 }
 
+ExitCode ExportAll(Session& session, const Options& options) {
+  if (options.out.empty()) {
+    return session.Refuse({.code = std::string(codes::kUsage.code),
+                           .message = "--as needs a place to write to",
+                           .help = "json: --out FILE; csv and toml: --out FOLDER"});
+  }
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(options.out, ignored) ||
+      !std::filesystem::is_empty(options.out, ignored)) {
+    if (const auto exists = RefuseToOverwrite(options.out, options.force))
+      return session.Refuse(*exists);
+  }
+  ExitCode code = ExitCode::kOk;
+  const auto store = Open(session, options.db, OpenMode::kReadOnly, code);
+  if (!store) return code;
+  const auto format = options.as == "json"  ? catalog::ExportFormat::kJson
+                      : options.as == "csv" ? catalog::ExportFormat::kCsv
+                                            : catalog::ExportFormat::kToml;
+  const auto written = store->ExportAll(format, options.out);
+  if (!written) return session.Refuse(written.error());
+  if (session.json) {
+    session.console.Json({{"out", options.out},
+                          {"layouts", written->layouts},
+                          {"evaluations", written->evaluations},
+                          {"files", written->files}});
+  } else {
+    session.console.Say(
+        fmt::format("{}: {}, {}, {} written",
+                    options.out,
+                    Counted(static_cast<std::size_t>(written->layouts), "layout"),
+                    Counted(static_cast<std::size_t>(written->evaluations), "evaluation"),
+                    Counted(static_cast<std::size_t>(written->files), "file")));
+  }
+  return ExitCode::kOk;
+}
+
+ExitCode Export(Session& session, const Options& options) {
+  if (options.as.empty() != options.key.empty())
+    return options.as.empty() ? ExportOne(session, options) : ExportAll(session, options);
+  return session.Refuse({.code = std::string(codes::kUsage.code),
+                         .message = options.as.empty() ? "what is to be exported?"
+                                                       : "--as exports everything, not one layout",
+                         .help = "give a layout, or --as json, csv or toml for all"});
+}
+
+ExitCode Search(Session& session, const Options& options) {
+  ExitCode code = ExitCode::kOk;
+  const auto store = Open(session, options.db, OpenMode::kReadOnly, code);
+  if (!store) return code;
+  const auto hits = store->Search(options.where, options.most);
+  if (!hits) return session.Refuse(hits.error());
+  ordered_json list = ordered_json::array();
+  TextTable table({{"id", true}, {""}, {"name"}, {"where"}});
+  for (const catalog::SearchHit& hit : *hits) {
+    const bool layout = hit.kind == catalog::SearchHit::Kind::kLayout;
+    const char* kind = layout ? "layout" : "study";
+    list.push_back({{"kind", kind},
+                    {"id", hit.id},
+                    {"name", hit.name},
+                    {"formula", layout ? ordered_json(hit.formula) : ordered_json(nullptr)},
+                    {"snippet", hit.snippet}});
+    table.Row({std::to_string(hit.id), kind, OneLine(hit.name), OneLine(hit.snippet)});
+  }
+  return Found(session, "found", std::move(list), table);
+}
+
+ExitCode Similar(Session& session, const Options& options) {
+  ExitCode code = ExitCode::kOk;
+  const auto store = Open(session, options.db, OpenMode::kReadOnly, code);
+  if (!store) return code;
+  const auto similar = store->Similar(options.key, options.most);
+  if (!similar) return session.Refuse(similar.error());
+  ordered_json list = ordered_json::array();
+  TextTable table({{"id", true}, {"similarity", true}, {"name"}, {"formula"}});
+  for (const catalog::SimilarLayout& layout : *similar) {
+    list.push_back({{"id", layout.id},
+                    {"similarity", layout.similarity},
+                    {"name", layout.name},
+                    {"formula", layout.formula},
+                    {"hash", layout.hash}});
+    table.Row({std::to_string(layout.id),
+               fmt::format("{:.3f}", layout.similarity),
+               OneLine(layout.name),
+               OneLine(layout.formula)});
+  }
+  return Found(session, "similar", std::move(list), table);
+}
+
 ExitCode Stats(Session& session, const Options& options) {
   ExitCode code = ExitCode::kOk;
   const auto store = Open(session, options.db, OpenMode::kReadOnly, code);
@@ -280,9 +432,11 @@ ExitCode Stats(Session& session, const Options& options) {
       table.Row({name, value.dump()});
       continue;
     }
-    const auto& counts = name == "modules"   ? statistics->modules
-                         : name == "plugins" ? statistics->plugins
-                                             : statistics->programs;
+    const auto& counts = name == "studies"    ? statistics->studies
+                         : name == "rejected" ? statistics->rejected
+                         : name == "modules"  ? statistics->modules
+                         : name == "plugins"  ? statistics->plugins
+                                              : statistics->programs;
     for (const auto& [what, count] : counts)
       table.Row({fmt::format("{}: {}", name, what), std::to_string(count)});
   }
@@ -300,13 +454,16 @@ ExitCode Verify(Session& session, const Options& options) {
   if (session.json) {
     session.console.Json({{"ok", report->Ok()},
                           {"layouts", report->layouts},
-                          {"calibrations", report->calibrations}});
+                          {"calibrations", report->calibrations},
+                          {"evaluations", report->evaluations}});
   } else {
+    const auto evaluations = static_cast<std::size_t>(report->evaluations);
     session.console.Out(
-        fmt::format("{}: {}, {}, {}\n",
+        fmt::format("{}: {}, {}{}, {}\n",
                     options.db,
                     Counted(static_cast<std::size_t>(report->layouts), "layout"),
                     Counted(static_cast<std::size_t>(report->calibrations), "calibration"),
+                    evaluations == 0 ? "" : ", " + Counted(evaluations, "evaluation"),
                     report->Ok() ? "ok" : Counted(report->findings.size(), "fault")));
   }
   return report->Ok() ? ExitCode::kOk : ExitCode::kNegative;
@@ -352,6 +509,23 @@ void AddQuery(Builder& builder) {
   query->add_flag("--csv", options.csv, "As CSV");
 }
 
+void AddFinders(Builder& builder, const char* key) {
+  const auto limit = [&builder](CLI::App* command) {
+    command->add_option("--limit", builder.options().most, "Most answers (20)")
+        ->type_name("N")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000}));
+  };
+  CLI::App* search =
+      builder.Add("search", "Which layouts and studies have these words", kSearchExamples, Search);
+  search->add_option("TEXT", builder.options().where, "Words; one that ends in * stands for many")
+      ->required();
+  limit(search);
+  CLI::App* similar =
+      builder.Add("similar", "Which layouts are built like this one", kSimilarExamples, Similar);
+  similar->add_option("KEY", builder.options().key, key)->required();
+  limit(similar);
+}
+
 void AddWriters(Builder& builder) {
   CLI::App* add = builder.Add("add", "Put layouts into the catalog", kAddExamples, Add);
   builder.File(add->add_option("FILE", builder.options().files, "Layouts")->required());
@@ -377,11 +551,17 @@ void AddCatalog(CLI::App& root, Session& session) {
   builder.Add("show", "Everything about one layout", kShowExamples, Show)
       ->add_option("KEY", builder.options().key, kKey)
       ->required();
-  CLI::App* out = builder.Add("export", "A layout's file as it was added", kExportExamples, Export);
-  out->add_option("KEY", builder.options().key, kKey)->required();
-  builder.File(out->add_option("-o,--out", builder.options().out, "File to write; else stdout")
-                   ->type_name("FILE"));
-  out->add_flag("--force", builder.options().force, "Replace the file if it exists");
+  CLI::App* out = builder.Add(
+      "export", "A layout's file as it was added, or all of it", kExportExamples, Export);
+  out->add_option("KEY", builder.options().key, kKey);
+  out->add_option("--as", builder.options().as, "Everything as json, csv or toml")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"json", "csv", "toml"}));
+  builder.File(
+      out->add_option("-o,--out", builder.options().out, "File or folder to write; else stdout")
+          ->type_name("FILE"));
+  out->add_flag("--force", builder.options().force, "Replace what exists");
+  AddFinders(builder, kKey);
   builder.Add("stats", "How many of what", kStatsExamples, Stats);
   builder.Add("verify", "Look for damage", kVerifyExamples, Verify);
 }

@@ -12,7 +12,7 @@ struct Rule {
 };
 
 /// The longest prefix counts.
-constexpr std::array<Rule, 24> kRules{{
+constexpr std::array<Rule, 29> kRules{{
     {"E", ExitCode::kBadInput},
     {"E0333", ExitCode::kInputOutput},  // layout that cannot be read
     {"E0401", ExitCode::kInputOutput},  // measurements that cannot be read
@@ -28,6 +28,11 @@ constexpr std::array<Rule, 24> kRules{{
     {"E0512", ExitCode::kNegative},     // no such layout
     {"E0513", ExitCode::kNegative},     // several such layouts
     {"E052", ExitCode::kUsage},         // query
+    {"E0543", ExitCode::kUsage},        // no such metric
+    {"E0544", ExitCode::kUsage},        // a metric of several kinds
+    {"E0548", ExitCode::kUsage},        // search without words
+    {"E0549", ExitCode::kUsage},        // a catalog into itself
+    {"E0550", ExitCode::kInputOutput},  // export that cannot be written
     {"E06", ExitCode::kUsage},
     {"E0610", ExitCode::kBadInput},
     {"E0613", ExitCode::kInputOutput},

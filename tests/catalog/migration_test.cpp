@@ -44,13 +44,13 @@ TEST_F(MigrationTest, BringsAnOldCatalogUpToDateAfterCopyingIt) {
   Parsed<Store> store = Store::Open(File(), {.mode = OpenMode::kReadWrite});
   ASSERT_TRUE(store) << Said(store.error());
   EXPECT_EQ(Said(store->Notes()),
-            File().string() + ": note: brought from schema 1 to 2; the file as it was lies in '" +
+            File().string() + ": note: brought from schema 1 to 3; the file as it was lies in '" +
                 File("machines.db.v1.bak").string() + "' [N0501]\n");
   EXPECT_EQ(Rows(File("machines.db.v1.bak")), before);
 
   const Parsed<Statistics> stats = store->Stats();
   ASSERT_TRUE(stats) << Said(stats.error());
-  EXPECT_EQ(stats->schema_version, 2);
+  EXPECT_EQ(stats->schema_version, 3);
   EXPECT_EQ(stats->layouts, 3);
   EXPECT_EQ(stats->parameters, 4);
   const Parsed<VerifyReport> report = store->Verify();
@@ -101,7 +101,7 @@ TEST_F(MigrationTest, UndoesAStepThatFails) {
   const Parsed<Store> store = Store::Open(File(), {.mode = OpenMode::kReadWrite});
   EXPECT_EQ(CodeOf(store), "E0507");
   EXPECT_THAT(Said(store.error()),
-              HasSubstr("from schema 1 to 2 failed and was undone: table calibration already"));
+              HasSubstr("from schema 1 to 3 failed and was undone: table calibration already"));
   EXPECT_THAT(Said(store.error()),
               HasSubstr("help: a copy lies in '" + File("machines.db.v1.bak").string()));
   SQLite::Database db(File().string());

@@ -118,7 +118,7 @@ TEST_F(OpeningTest, RefusesANewerSchemaAndSaysWhichProgramReadsIt) {
   ExpectRefused("E0505");
   const auto opened = Store::Open(File());
   EXPECT_THAT(Said(opened.error()),
-              HasSubstr("the catalog has schema 99, newer than this program's 2 [E0505]"));
+              HasSubstr("the catalog has schema 99, newer than this program's 3 [E0505]"));
   EXPECT_THAT(Said(opened.error()), HasSubstr("help: use kompono 7.8.9 or newer"));
 }
 

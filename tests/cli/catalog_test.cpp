@@ -154,10 +154,80 @@ TEST_F(Catalog, CalibrationsComeWithTheirReport) {
 TEST_F(Catalog, MergeTakesLayoutsFromOthers) {
   ASSERT_EQ(Run({"catalog", "add", "one.db", lambda_}).code, 0);
   ASSERT_EQ(Run({"catalog", "add", "two.db", mill_, lambda_}).code, 0);
-  const nlohmann::json added = Json({"catalog", "merge", "all.db", "one.db", "two.db"})["added"];
-  EXPECT_EQ(added.size(), 3U);
+  const nlohmann::json merged = Json({"catalog", "merge", "all.db", "one.db", "two.db"})["merged"];
+  ASSERT_EQ(merged.size(), 2U);
+  EXPECT_EQ(merged[0]["layouts_added"], 1);
+  EXPECT_EQ(merged[1]["layouts_added"], 1);
+  EXPECT_EQ(merged[1]["layouts_unchanged"], 1);
+  EXPECT_THAT(Run({"catalog", "merge", "all.db", "one.db"}).out, HasSubstr("unchanged"));
+  EXPECT_EQ(Run({"catalog", "merge", "all.db", "all.db"}).code, 2);
   EXPECT_EQ(Json({"catalog", "stats", "all.db"})["layouts"], 2);
   EXPECT_EQ(Run({"catalog", "verify", "all.db"}).code, 0);
+}
+
+TEST_F(Catalog, SearchFindsWords) {
+  Fill();
+  const nlohmann::json found = Json({"catalog", "search", "machines.db", "lambda water"})["found"];
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0]["kind"], "layout");
+  EXPECT_THAT(Run({"catalog", "search", "machines.db", "mill*"}).out, HasSubstr("Knee mill"));
+  EXPECT_EQ(Run({"catalog", "search", "machines.db", "zeppelin"}).code, 1);
+  EXPECT_EQ(Run({"catalog", "search", "machines.db", "\" OR NEAR( --"}).code, 1);
+  const Outcome none = Run({"catalog", "search", "machines.db", "();--"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("[E0548]"));
+}
+
+TEST_F(Catalog, SimilarComparesStructures) {
+  ASSERT_EQ(
+      Run({"catalog", "add", "machines.db", mill_, lambda_, Machine("so_waterjet_gantry")}).code,
+      0);
+  const nlohmann::json similar =
+      Json({"catalog", "similar", "machines.db", "Knee mill"})["similar"];
+  ASSERT_EQ(similar.size(), 2U);
+  EXPECT_GE(similar[0]["similarity"], similar[1]["similarity"]);
+  EXPECT_EQ(
+      Json({"catalog", "similar", "machines.db", "Knee mill", "--limit", "1"})["similar"].size(),
+      1U);
+  EXPECT_THAT(Run({"catalog", "similar", "machines.db", "Knee mill"}).out, HasSubstr("similarity"));
+  EXPECT_EQ(Run({"catalog", "similar", "machines.db", "Lathe"}).code, 1);
+}
+
+TEST_F(Catalog, ExportWritesEverythingInAFixedOrder) {
+  ASSERT_EQ(Run({"catalog", "add", "one.db", lambda_, mill_}).code, 0);
+  ASSERT_EQ(Run({"catalog", "add", "two.db", mill_, lambda_}).code, 0);
+  for (const char* name : {"one", "two"}) {
+    const std::string db = std::string(name) + ".db";
+    const Outcome json =
+        Run({"catalog", "export", db, "--as", "json", "-o", std::string(name) + ".json"});
+    EXPECT_EQ(json.code, 0) << json.err;
+    const nlohmann::json csv = Json({"catalog", "export", db, "--as", "csv", "-o", name});
+    EXPECT_EQ(csv["layouts"], 2);
+  }
+  EXPECT_EQ(Shell("cmp one.json two.json").code, 0);
+  EXPECT_EQ(Shell("diff -r one two").code, 0);
+  EXPECT_EQ(Json({"catalog", "export", "one.db", "--as", "toml", "-o", "files"})["files"], 2);
+  EXPECT_EQ(Run({"catalog", "add", "again.db", "--", "one.json"}).code, 3);
+  EXPECT_EQ(Run({"catalog", "export", "one.db", "--as", "json", "-o", "one.json"}).code, 5);
+  EXPECT_EQ(Run({"catalog", "export", "one.db", "--as", "csv", "-o", "one"}).code, 5);
+  EXPECT_EQ(Run({"catalog", "export", "one.db", "--as", "csv"}).code, 2);
+  EXPECT_EQ(Run({"catalog", "export", "one.db"}).code, 2);
+  EXPECT_EQ(Run({"catalog", "export", "one.db", "1", "--as", "csv", "-o", "x"}).code, 2);
+}
+
+TEST_F(Catalog, QueryAsksForMetricsByName) {
+  Fill();
+  const nlohmann::json found = Json({"catalog",
+                                     "query",
+                                     "machines.db",
+                                     "metric.\"mobility.drive\" = 2",
+                                     "--columns",
+                                     "name, metric.singularity_margin as margin"});
+  ASSERT_EQ(found["rows"].size(), 1U);
+  EXPECT_GT(found["rows"][0]["margin"], 0.0);
+  const Outcome wrong = Run({"catalog", "query", "machines.db", "metric.singularity > 1"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("[E0543]"));
 }
 
 TEST_F(Catalog, StatsAndVerify) {

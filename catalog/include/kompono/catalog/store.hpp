@@ -94,7 +94,7 @@ struct Statistics {
 
 [[nodiscard]] nlohmann::ordered_json ToJson(const Statistics& statistics);
 
-/// What `Store::Verify` looked at and what it found (E0530-E0537).
+/// What `Store::Verify` looked at and what it found (E0530-E0534, E0545-E0547).
 struct VerifyReport {
   std::int64_t layouts = 0;
   std::int64_t calibrations = 0;
@@ -158,6 +158,13 @@ class Store {
   /// is written.
   [[nodiscard]] Parsed<std::vector<AddResult>> AddAll(std::span<const LayoutRecord> records,
                                                       const AddOptions& options = {});
+
+  /// For some ten thousand new layouts and more: between the two calls three indexes are left out,
+  /// which are quicker made at once than row by row. Whatever was added in between stays if `EndBulk`
+  /// is never reached; the next program that opens the file for writing makes the indexes. Until
+  /// then queries are slow. `EndBulk` keeps other writers waiting for seconds per million layouts.
+  [[nodiscard]] Diagnostics BeginBulk();
+  [[nodiscard]] Diagnostics EndBulk();
 
   /// The id of a study, which is added if it is not there: the start of a run and its resumption.
   [[nodiscard]] Parsed<std::int64_t> BeginStudy(const StudyRecord& study);

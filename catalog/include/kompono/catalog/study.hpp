@@ -70,7 +70,7 @@ struct EvaluationRecord {
   /// The sized layout, most often of those that are ok: what `query`, `show` and `similar` find.
   /// Its own `metrics` stay empty, those above count. Leave `toml` empty where the text can be made
   /// again from study and index, and fill in `name` (unique: "sheet/4711"), `formula`, `blocks` and
-  /// the sized `parameters`. Provenance: the study's, if it is empty.
+  /// the sized `parameters`. Its provenance is the run's.
   std::optional<LayoutRecord> layout;
 };
 

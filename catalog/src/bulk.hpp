@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef KOMPONO_CATALOG_SRC_BULK_HPP_
+#define KOMPONO_CATALOG_SRC_BULK_HPP_
+
+#include <SQLiteCpp/Database.h>
+
+#include <array>
+#include <string_view>
+
+namespace kompono::catalog {
+
+/// Indexes whose entries come in random order: with a million layouts nearly every new row dirties
+/// another page of them, while sorting all entries once takes seconds.
+struct DeferredIndex {
+  std::string_view name;
+  std::string_view sql;  ///< word for word as in the schema
+};
+inline constexpr std::array<DeferredIndex, 3> kDeferredIndexes = {{
+    {"layout_by_hash", "CREATE INDEX layout_by_hash ON layout(hash_key)"},
+    {"layout_by_name", "CREATE INDEX layout_by_name ON layout(name)"},
+    {"metric_by_value", "CREATE INDEX metric_by_value ON metric(measure_id, value)"},
+}};
+
+/// True from `BeginBulk` to `EndBulk`, whoever called them, and after a load that was cut short.
+[[nodiscard]] bool BulkLoading(SQLite::Database& db);
+
+/// One transaction each.
+void BeginBulk(SQLite::Database& db);
+void EndBulk(SQLite::Database& db);
+
+}  // namespace kompono::catalog
+
+#endif  // KOMPONO_CATALOG_SRC_BULK_HPP_
