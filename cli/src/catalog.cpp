@@ -102,10 +102,7 @@ std::string OneLine(std::string_view text) {
   return line;
 }
 
-ExitCode Found(const Session& session,
-               const char* name,
-               ordered_json list,
-               const TextTable& table) {
+ExitCode Found(Session& session, const char* name, ordered_json list, const TextTable& table) {
   const bool nothing = list.empty();
   if (session.json) {
     session.console.Json({{name, std::move(list)}});
@@ -332,11 +329,15 @@ ExitCode ExportAll(Session& session, const Options& options) {
                            .message = "--as needs a place to write to",
                            .help = "json: --out FILE; csv and toml: --out FOLDER"});
   }
+  if (const auto exists = RefuseToOverwrite(options.out, options.force))
+    return session.Refuse(*exists);
   std::error_code ignored;
-  if (!std::filesystem::is_directory(options.out, ignored) ||
-      !std::filesystem::is_empty(options.out, ignored)) {
-    if (const auto exists = RefuseToOverwrite(options.out, options.force))
-      return session.Refuse(*exists);
+  const bool folder = std::filesystem::is_directory(options.out, ignored);
+  if (folder && !options.force && !std::filesystem::is_empty(options.out, ignored)) {
+    return session.Refuse({.code = std::string(codes::kFileExists.code),
+                           .file = options.out,
+                           .message = "the folder is not empty",
+                           .help = "give another folder, or --force to write into this one"});
   }
   ExitCode code = ExitCode::kOk;
   const auto store = Open(session, options.db, OpenMode::kReadOnly, code);
