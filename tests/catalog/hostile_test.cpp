@@ -241,6 +241,37 @@ TEST_F(HostileTest, HarmlessTextsThatLookHostileAreAnswered) {
   }
 }
 
+/// Operators of the full-text language and of SQL are words or nothing to a search.
+TEST_F(HostileTest, SearchTextsAreWordsOnly) {
+  const auto search = [this](const std::string& text) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto hits = store_.Search(text);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1)) << text;
+    return hits ? std::to_string(hits->size()) : Said(hits.error());
+  };
+  EXPECT_EQ(search("jet"), "1");
+  EXPECT_EQ(search("jet\" OR \"mill"), "0") << "would find two as an operator";
+  EXPECT_EQ(search("jet NOT water"), "0") << "would find none either; the word 'not' is wanted";
+  EXPECT_EQ(search("parts:jet"), "0") << "a column filter would find it";
+  EXPECT_EQ(search("jet*"), "1");
+  EXPECT_EQ(search("NEAR(jet water)"), "0");
+  EXPECT_EQ(search("^lambda"), "1") << "the mark is no word";
+  EXPECT_EQ(search("{name formula}: jet"), "0");
+  EXPECT_EQ(search("'; DROP TABLE layout; --"), "0");
+  EXPECT_EQ(search("')) UNION SELECT sql FROM sqlite_schema --"), "0");
+  EXPECT_THAT(search(Repeated("a* ", 32)), testing::Not(HasSubstr("error")));
+  for (const Hostile& hostile : HostileTexts()) {
+    const std::string answer = search(hostile.text);
+    EXPECT_TRUE(answer == "0" || answer.find("E0548") != std::string::npos || answer.size() == 1U)
+        << hostile.what << ": " << answer;
+  }
+}
+
+TEST_F(HostileTest, KeysOfSimilarLayoutsAreKeysOnly) {
+  for (const Hostile& hostile : HostileTexts())
+    EXPECT_EQ(CodeOf(store_.Similar(hostile.text)), "E0512") << hostile.what;
+}
+
 TEST_F(HostileTest, TheConnectionItselfCannotWrite) {
   // Even if a text got through: the second fence, tried directly.
   SQLite::Database db(File().string(), SQLite::OPEN_READONLY);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "catalog_fixture.hpp"
+#include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 
 #include <gmock/gmock.h>
 
@@ -29,12 +31,14 @@ std::string Rows(const std::filesystem::path& path) {
   return text;
 }
 
-/// data/catalog_v1.sql is a catalog of schema 1 with three layouts, as the first program made it.
+/// data/catalog_v1.sql is a catalog of schema 1 with three layouts, as the first program made it;
+/// catalog_v2.sql the same of schema 2 with a calibrated fourth.
 class MigrationTest : public CatalogTest {
  protected:
-  void StoreOldCatalog() const {
+  void StoreOldCatalog(int version = 1) const {
     SQLite::Database db(File().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    db.exec(Bytes(std::filesystem::path(KOMPONO_SOURCE_DIR) / "tests/catalog/data/catalog_v1.sql"));
+    db.exec(Bytes(std::filesystem::path(KOMPONO_SOURCE_DIR) /
+                  fmt::format("tests/catalog/data/catalog_v{}.sql", version)));
   }
 };
 
@@ -58,6 +62,44 @@ TEST_F(MigrationTest, BringsAnOldCatalogUpToDateAfterCopyingIt) {
   EXPECT_EQ(Said(report->findings), "")
       << "the migrated schema and rows are those of a new catalog";
   EXPECT_EQ(report->layouts, 3);
+}
+
+TEST_F(MigrationTest, KeepsResultsAndCalibrationsOfTheSecondSchema) {
+  StoreOldCatalog(2);
+  std::map<std::string, double> metrics;
+  {
+    SQLite::Database db(File().string());
+    SQLite::Statement row(db, "SELECT layout || name || unit || method, value FROM metrics");
+    while (row.executeStep()) metrics[row.getColumn(0).getString()] = row.getColumn(1).getDouble();
+    ASSERT_EQ(metrics.size(), 5U);
+  }
+  Parsed<Store> store = Store::Open(File(), {.mode = OpenMode::kReadWrite});
+  ASSERT_TRUE(store) << Said(store.error());
+  EXPECT_EQ(Said(store->Verify()->findings), "");
+  EXPECT_EQ(store->Stats()->layouts, 4);
+  EXPECT_EQ(store->Stats()->calibrations, 1);
+  EXPECT_EQ(store->Query({.where = "rms_after_um < 100"})->rows.size(), 1U);
+  EXPECT_EQ(store->Query({.where = "metric.singularity_margin > 0"})->rows.size(), 1U);
+  EXPECT_EQ(store->Search("sheet drive")->size(), 1U) << "words of what was there before";
+  EXPECT_FALSE(store->Similar("Knee mill")->empty());
+  const Parsed<StoredLayout> jet = store->Show("4");
+  EXPECT_EQ(jet->record.metrics.size(), 5U);
+  EXPECT_GT(jet->record.parameters.size(), 40U);
+  SQLite::Database db(File().string());
+  SQLite::Statement row(db, "SELECT layout || name || unit || method, value FROM metrics");
+  while (row.executeStep())
+    EXPECT_EQ(metrics.at(row.getColumn(0).getString()), row.getColumn(1).getDouble());
+  EXPECT_EQ(db.execAndGet("SELECT count(*) FROM formulas WHERE tree IS NULL").getInt(), 0);
+  EXPECT_EQ(db.execAndGet("PRAGMA user_version").getInt(), 3);
+}
+
+TEST_F(MigrationTest, OldCatalogsAreMergedAfterTheyAreBroughtUpToDate) {
+  StoreOldCatalog(2);
+  Store fresh = Create("fresh.db");
+  EXPECT_EQ(CodeOf(Store::Open(File())), "E0506");
+  ASSERT_TRUE(fresh.Merge(Create()));
+  EXPECT_EQ(fresh.Stats()->layouts, 4);
+  EXPECT_EQ(Said(fresh.Verify()->findings), "");
 }
 
 TEST_F(MigrationTest, AddsResultsToLayoutsOfTheOldCatalog) {
