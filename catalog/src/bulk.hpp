@@ -15,9 +15,11 @@ struct DeferredIndex {
   std::string_view name;
   std::string_view sql;  ///< word for word as in the schema
 };
-inline constexpr std::array<DeferredIndex, 3> kDeferredIndexes = {{
+inline constexpr std::array<DeferredIndex, 5> kDeferredIndexes = {{
     {"layout_by_hash", "CREATE INDEX layout_by_hash ON layout(hash_key)"},
     {"layout_by_name", "CREATE INDEX layout_by_name ON layout(name)"},
+    {"layout_by_formula", "CREATE INDEX layout_by_formula ON layout(formula_id)"},
+    {"layout_block_by_module", "CREATE INDEX layout_block_by_module ON layout_block(module_id)"},
     {"metric_by_value", "CREATE INDEX metric_by_value ON metric(measure_id, value)"},
 }};
 

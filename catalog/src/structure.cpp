@@ -119,7 +119,7 @@ class FeatureList {
   static constexpr int kMostBranches = 16;  // "999(part C)" has no more structure than that
 
   std::string AddAxis(const Axis& axis, const std::string& side) {
-    const std::string letter(1, axis.letter);
+    std::string letter(1, axis.letter);
     Add(fmt::format("{} {}", side, letter));
     Add(fmt::format("{} {}", axis.working ? "works" : "sets", letter));
     if (axis.orientation != formula::Orientation::kNone)

@@ -91,6 +91,37 @@ TEST_F(QueryTest, EveryViewHasTheDocumentedColumns) {
   EXPECT_GT(columns, 50);
 }
 
+/// The lines of the fenced blocks between two headings of docs/catalog.md.
+std::vector<std::string> Examples(const std::string& from, const std::string& to) {
+  const std::string text = Bytes(std::filesystem::path(KOMPONO_SOURCE_DIR) / "docs/catalog.md");
+  const std::size_t begin = text.find("## " + from);
+  std::istringstream lines(text.substr(begin, text.find("## " + to, begin) - begin));
+  std::vector<std::string> examples;
+  bool fenced = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line == "```") {
+      fenced = !fenced;
+    } else if (fenced) {
+      examples.push_back(line);
+    }
+  }
+  return examples;
+}
+
+TEST_F(QueryTest, EveryExampleOfTheDocumentationIsAnswered) {
+  LayoutRecord record = KneeMill();
+  record.metrics = {{.name = "singularity_margin", .value = 0.5, .unit = "1", .method = "at home"},
+                    {.name = "mobility.drive", .value = 2.0, .unit = "1", .method = "at home"}};
+  ASSERT_TRUE(store_.Add(record));
+  const std::vector<std::string> examples = Examples("Asking", "Searching words");
+  EXPECT_EQ(examples.size(), 8U);
+  for (const std::string& where : examples) {
+    const Parsed<Table> table = store_.Query({.where = where});
+    EXPECT_TRUE(table) << where << "\n" << (table ? "" : Said(table.error()));
+  }
+  EXPECT_THAT(Where(examples.back()), ElementsAre("Knee mill"));
+}
+
 TEST_F(QueryTest, SortsByExpressionsInBothDirections) {
   EXPECT_THAT(Names({.columns = "name", .sort = "coordinates desc, name"}),
               ElementsAre("Hexapod", "Knee mill", "Lambda water-jet"));

@@ -159,10 +159,11 @@ class Store {
   [[nodiscard]] Parsed<std::vector<AddResult>> AddAll(std::span<const LayoutRecord> records,
                                                       const AddOptions& options = {});
 
-  /// For some ten thousand new layouts and more: between the two calls three indexes are left out,
-  /// which are quicker made at once than row by row. Whatever was added in between stays if `EndBulk`
-  /// is never reached; the next program that opens the file for writing makes the indexes. Until
-  /// then queries are slow. `EndBulk` keeps other writers waiting for seconds per million layouts.
+  /// For some ten thousand new layouts and more: between the two calls five indexes are left out,
+  /// which are quicker made at once than row by row. Whatever was added in between stays if
+  /// `EndBulk` is never reached; the next program that opens the file for writing makes the
+  /// indexes. Until then queries are slow. `EndBulk` keeps other writers waiting for seconds per
+  /// million layouts.
   [[nodiscard]] Diagnostics BeginBulk();
   [[nodiscard]] Diagnostics EndBulk();
 
