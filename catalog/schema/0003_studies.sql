@@ -105,7 +105,7 @@ CREATE TABLE study_rule(
   study_id INTEGER NOT NULL REFERENCES study(id) ON DELETE CASCADE,
   position INTEGER NOT NULL CHECK(position >= 0),
   first TEXT NOT NULL CHECK(first <> ''),
-  second TEXT NOT NULL CHECK(second <> ''),
+  second TEXT NOT NULL,
   kind TEXT NOT NULL CHECK(kind IN ('logical', 'empirical', 'normative')),
   reason TEXT NOT NULL,
   author TEXT NOT NULL,

@@ -113,9 +113,9 @@ Diagnostics Check(const StudyRecord& study) {
   judge.Require(study.candidates >= 0, "the number of candidates", "is negative");
   for (const StudyRule& rule : study.rules) {
     const std::string what = fmt::format("the rule '{}' against '{}'", rule.first, rule.second);
+    judge.Require(!rule.first.empty(), what, "names nothing");
     for (const std::string_view text :
          {std::string_view(rule.first), std::string_view(rule.second)}) {
-      judge.Require(!text.empty(), what, "names nothing");
       judge.Text(text, "a tag of a rule");
     }
     judge.Require(rule.kind == "logical" || rule.kind == "empirical" || rule.kind == "normative",

@@ -157,8 +157,10 @@ void Writer::FillFormula(std::int64_t id,
   const std::string tree = TreeJson(text);
   tree_.Integer(id).TextOrNull(tree).Run();
   clear_motions_.Integer(id).Run();
+  const std::vector<Motion> derived =
+      motions.empty() ? FactsOf(text).motions : std::vector<Motion>();
   std::int64_t position = 0;
-  for (const Motion& motion : motions) {
+  for (const Motion& motion : motions.empty() ? std::span<const Motion>(derived) : motions) {
     motion_.Integer(id)
         .Integer(position++)
         .Text(motion.axis)

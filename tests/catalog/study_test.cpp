@@ -88,6 +88,31 @@ TEST_F(StudyTest, EvaluationsComeBackAsTheyWere) {
   }
 }
 
+TEST_F(StudyTest, MotionsFollowFromTheFormulaIfNobodyGivesThem) {
+  Store store = Create();
+  const std::int64_t study = *store.BeginStudy(SheetStudy(10));
+  std::vector<EvaluationRecord> records = EvaluatedAll({1, 3});
+  records[0].layout->distribution = "given";
+  records[0].layout->relative_motion = "given";
+  ASSERT_TRUE(store.AppendChunk(study, {1, 3}, records));
+  SQLite::Database db(File().string());
+  EXPECT_EQ(
+      db.execAndGet("SELECT group_concat(axis || ' ' || side, ', ') FROM motions WHERE layout = "
+                    "'sheet/1'")
+          .getString(),
+      "X workpiece, Y workpiece, Z3 tool");
+  EXPECT_EQ(db.execAndGet("SELECT count(*) FROM motions WHERE layout = 'sheet/2'").getInt(), 3);
+}
+
+TEST_F(StudyTest, ARuleMayForbidOneAlternativeAlone) {
+  StudyRecord record = SheetStudy(10);
+  record.rules.push_back({.first = "motion:A", .kind = "normative"});
+  Store store = Create();
+  EXPECT_TRUE(store.BeginStudy(record));
+  record.rules.back().first.clear();
+  EXPECT_EQ(CodeOf(store.BeginStudy(record)), "E0540");
+}
+
 TEST_F(StudyTest, AppendingAgainChangesNothing) {
   Store store = Create();
   const std::int64_t study = Run(store, 300, {{50, 100}});

@@ -33,10 +33,10 @@ struct IndexRange {
   [[nodiscard]] std::int64_t size() const { return end - begin; }
 };
 
-/// A pair of alternatives that the study forbids.
+/// A pair of alternatives that the study forbids, or one alone.
 struct StudyRule {
   std::string first;   ///< tag: "module:lambda"
-  std::string second;  ///< tag: "base:closed"
+  std::string second;  ///< tag: "base:closed"; empty: the first is forbidden altogether
   std::string kind;    ///< "logical", "empirical" or "normative"
   std::string reason;
   std::string author;
