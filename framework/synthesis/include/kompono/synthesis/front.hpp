@@ -26,7 +26,7 @@ struct Domination {
   FrontPoint by;               ///< of all that dominate it the one that is best where it is worst
   std::size_t dominators = 0;  ///< points of the front that dominate it
   /// For each objective by how much `by` is better: never negative, 0 where both are equal.
-  std::vector<double> better_by;
+  std::vector<double> better_by = {};
   /// The objective where it is most better, measured by the front's extent.
   std::size_t most = 0;
 };
@@ -65,6 +65,12 @@ class Front {
 
  private:
   [[nodiscard]] FrontPoint At(std::size_t row) const;
+  [[nodiscard]] std::span<const double> Row(std::size_t row) const;
+  [[nodiscard]] std::vector<double> Turned(std::span<const double> values) const;
+  /// For each objective 1 / (greatest - least value), 0 where all are equal.
+  [[nodiscard]] std::vector<double> Scales() const;
+  void Swap(std::size_t a, std::size_t b);
+  void DropLast();
 
   std::vector<Direction> directions_;
   std::vector<double> rows_;  ///< row by row, signs turned so that less is better

@@ -47,8 +47,8 @@ enum class RuleKind { kLogical, kEmpirical, kNormative };
 struct RuleTitle {
   std::string name;
   RuleKind kind = RuleKind::kLogical;
-  std::string reason;
-  std::string author;
+  std::string reason = {};
+  std::string author = {};
   /// Part of what the features mean (one place for each item, …): it cannot be switched off and
   /// Explain does not ask what would be without it.
   bool structural = false;
@@ -56,13 +56,13 @@ struct RuleTitle {
 
 struct Alternative {
   std::string name;
-  std::vector<std::string> tags;
+  std::vector<std::string> tags = {};
   [[nodiscard]] bool Has(std::string_view tag) const;
 };
 
 struct Feature {
   std::string name;
-  std::vector<Alternative> alternatives;
+  std::vector<Alternative> alternatives = {};
   /// The alternative of that name; -1 if there is none.
   [[nodiscard]] int Find(std::string_view alternative) const;
 };
@@ -95,12 +95,13 @@ class Space {
   [[nodiscard]] const std::vector<RuleTitle>& rules() const { return rules_; }
   [[nodiscard]] int Find(std::string_view feature) const;  ///< -1 if there is none
 
-  /// A pair that a rule forbids; first < second, equal for an alternative itself. Sorted.
+  /// A pair that a rule forbids; first < second, equal for an alternative itself.
   struct Conflict {
     Choice first, second;
     int rule = 0;
     auto operator<=>(const Conflict&) const = default;
   };
+  /// As they were added; the same may stand there twice.
   [[nodiscard]] const std::vector<Conflict>& conflicts() const { return conflicts_; }
 
   void SwitchOff(int rule, bool off = true);  ///< @throws std::logic_error if it is structural
