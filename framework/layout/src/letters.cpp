@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "letters.hpp"
+#include "kompono/layout/letters.hpp"
 
 #include <algorithm>
 #include <cmath>

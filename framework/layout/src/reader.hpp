@@ -4,7 +4,7 @@
 
 #include "complaints.hpp"
 #include "formula_place.hpp"
-#include "letters.hpp"
+#include "kompono/layout/letters.hpp"
 #include "units.hpp"
 
 #include <functional>

@@ -69,7 +69,9 @@ class StudySpace {
  public:
   /// E08xx when nothing is left, a module realises nothing, a tag or feature is unknown, or an
   /// alternative makes layouts that cannot be read.
-  [[nodiscard]] static Parsed<StudySpace> Build(Study study, const plugin::Registry& registry);
+  [[nodiscard]] static Parsed<StudySpace> Build(Study study,
+                                                const plugin::Registry& registry,
+                                                Diagnostics* notes = nullptr);
 
   [[nodiscard]] const Study& study() const { return study_; }
   [[nodiscard]] const plugin::Registry& registry() const { return *registry_; }
@@ -100,6 +102,7 @@ class StudySpace {
     enum class Kind { kEmpty, kBase, kItem } kind = Kind::kEmpty;
     int item = 0;
     bool part_side = false;
+    bool operator==(const PlaceMeaning&) const = default;
   };
   /// Features of a module; -1 for one that has a single alternative.
   struct ModuleFeatures {
@@ -107,6 +110,10 @@ class StudySpace {
     int mode = -1;
     std::vector<int> parameters;
   };
+
+  [[nodiscard]] std::optional<Fixing> FixChains(const formula::Chain& left,
+                                                const formula::Chain& right) const;
+  void SortTranslations(std::vector<Candidate::Placed>& placed) const;
 
   Study study_;
   const plugin::Registry* registry_ = nullptr;
@@ -116,7 +123,7 @@ class StudySpace {
   std::vector<PlaceMeaning> places_;        ///< alternatives of every place
   std::vector<int> part_ends_, tool_ends_;  ///< alternatives -> Study::ends
   int grouping_feature_ = 0;
-  int part_end_feature_ = -1, tool_end_feature_ = -1, base_feature_ = -1;
+  int part_end_feature_ = 0, tool_end_feature_ = 0, base_feature_ = 0;
   int first_place_ = 0, place_count_ = 0;
   std::vector<ModuleFeatures> module_features_;
 };
@@ -128,6 +135,11 @@ class StudySpace {
 [[nodiscard]] std::string LayoutText(const StudySpace& space,
                                      const Candidate& candidate,
                                      std::span<const Size> sizes = {});
+
+/// The block's local coordinates in the middle of the work zone; mm, 0 for rotations.
+[[nodiscard]] std::vector<double> HomeOf(const StudySpace& space,
+                                         const Candidate::Block& block,
+                                         std::span<const Size> sizes = {});
 
 /// The block's flat parameter vector (mm, rad) with levels and sizes put in.
 [[nodiscard]] std::vector<double> ParametersOf(const StudySpace& space,

@@ -65,11 +65,13 @@ struct Level {
   std::vector<double> numbers;  ///< mm, rad or pure, as many as the parameter has
 };
 
-/// A parameter of a study's module that the study says something of.
+/// A parameter of a study's module that the study says something of, or the place of the work
+/// zone's middle along one of the module's own translations: "home.Y".
 struct StudyParameter {
   std::string name;
-  int offset = 0;  ///< first number in the module's parameter vector
-  int count = 1;   ///< how many numbers
+  int coordinate = -1;  ///< of a home: the local coordinate; -1 for a parameter
+  int offset = 0;       ///< first number in the module's parameter vector
+  int count = 1;        ///< how many numbers
   bool angle = false;
   /// One: fixed. Several: a feature of the space. None: `range` is given.
   std::vector<Level> levels;
@@ -98,8 +100,8 @@ struct StudyModule {
   std::vector<MountChoice> mounts;  ///< at least one
   std::vector<ModeChoice> modes;    ///< at least one
   std::vector<StudyParameter> parameters;
-  /// Local coordinates (mm, rad, by the module's own letters) that the middle of the work zone
-  /// gets.
+  /// Local coordinates in the middle of the work zone as far as one value is given for them, mm; 0
+  /// for rotations, whose coordinates count as the motions do. See HomeOf.
   std::vector<double> home;
   std::vector<layout::Drive> drives;  ///< in the order of the module's description
   std::vector<double> defaults;  ///< flat parameter vector with defaults and single levels put in
@@ -156,7 +158,8 @@ struct Study {
   double part_mass_kg = 0.0;
   char process_direction = 'z';  ///< of the process or the tool's axis: 'x', 'y' or 'z'
   std::vector<Motion> motions;   ///< in the order of the file
-  std::vector<EndChoice> ends;   ///< at least one of each side
+  std::vector<EndChoice> ends;   ///< at least one of each side; bare "part" and "tool" if none
+                                 ///< is given
   std::vector<StudyModule> modules;
   std::vector<StudyRule> rules;
   std::vector<Objective> objectives;
