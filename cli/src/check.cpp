@@ -15,6 +15,7 @@
 
 #include "kompono/calibration/measurements.hpp"
 #include "kompono/plugin/description.hpp"
+#include "kompono/synthesis/candidate.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -34,12 +35,14 @@ struct Options {
   bool no_code = false;
 };
 
-enum class Kind { kUnknown, kLayout, kMeasurements, kSidecar };
+enum class Kind { kUnknown, kLayout, kStudy, kMeasurements, kSidecar };
 
 std::string_view Name(Kind kind) {
   switch (kind) {
     case Kind::kLayout:
       return "layout";
+    case Kind::kStudy:
+      return "study";
     case Kind::kMeasurements:
       return "measurements";
     case Kind::kSidecar:
@@ -65,6 +68,7 @@ bool HasKey(std::string_view text, std::string_view key) {
 Kind KindOf(const std::filesystem::path& file, std::string_view text) {
   if (file.extension() == ".csv") return Kind::kMeasurements;
   if (file.filename() == "plugin.toml") return Kind::kSidecar;
+  if (HasKey(text, "study")) return Kind::kStudy;
   if (file.extension() == ".toml") return Kind::kLayout;
   if (HasKey(text, "contract")) return Kind::kSidecar;
   if (HasKey(text, "formula") || HasKey(text, "kompono")) return Kind::kLayout;
@@ -104,6 +108,17 @@ void JudgeLayout(Session& session, std::string_view text, bool run_code, Verdict
   }
 }
 
+/// The text, then whether its space has layouts and each alternative makes good ones.
+void JudgeStudy(Session& session, std::string_view text, Verdict& verdict) {
+  Parsed<synthesis::Study> study =
+      synthesis::ParseStudy(text, verdict.file, session.registry(), {}, &verdict.diagnostics);
+  Take(study, verdict.diagnostics);
+  if (study) {
+    Take(synthesis::StudySpace::Build(std::move(*study), session.registry(), &verdict.diagnostics),
+         verdict.diagnostics);
+  }
+}
+
 Verdict Judge(Session& session,
               const std::string& file,
               bool run_code,
@@ -119,6 +134,9 @@ Verdict Judge(Session& session,
   switch (verdict.kind) {
     case Kind::kLayout:
       JudgeLayout(session, *text, run_code, verdict);
+      break;
+    case Kind::kStudy:
+      JudgeStudy(session, *text, verdict);
       break;
     case Kind::kSidecar:
       Take(plugin::ParseSidecar(*text, file), verdict.diagnostics);
@@ -136,10 +154,11 @@ Verdict Judge(Session& session,
       }
       break;
     case Kind::kUnknown:
-      verdict.diagnostics.push_back(Problem(codes::kUnknownFormat,
-                                            file,
-                                            "neither a layout nor measurements nor a plugin.toml",
-                                            "layouts are called *.toml, measurements *.csv"));
+      verdict.diagnostics.push_back(
+          Problem(codes::kUnknownFormat,
+                  file,
+                  "neither a layout nor a study nor measurements nor a plugin.toml",
+                  "layouts and studies are called *.toml, measurements *.csv"));
       break;
   }
   return verdict;
@@ -199,10 +218,11 @@ ExitCode Run(Session& session, const Options& options) {
 
 void AddCheck(CLI::App& root, Session& session) {
   CLI::App* command = session.Command(
-      root, "check", "Judge layouts, measurement files and plugin sidecars", kExamples);
+      root, "check", "Judge layouts, studies, measurement files and plugin sidecars", kExamples);
   const auto options = std::make_shared<Options>();
   session.Hint(
-      command->add_option("FILE", options->files, "Layouts, measurements, plugin.toml")->required(),
+      command->add_option("FILE", options->files, "Layouts, studies, measurements, plugin.toml")
+          ->required(),
       ValueHint::Kind::kFile);
   session.Hint(
       command

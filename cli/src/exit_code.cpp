@@ -12,7 +12,7 @@ struct Rule {
 };
 
 /// The longest prefix counts.
-constexpr std::array<Rule, 29> kRules{{
+constexpr std::array<Rule, 31> kRules{{
     {"E", ExitCode::kBadInput},
     {"E0333", ExitCode::kInputOutput},  // layout that cannot be read
     {"E0401", ExitCode::kInputOutput},  // measurements that cannot be read
@@ -40,8 +40,10 @@ constexpr std::array<Rule, 29> kRules{{
     {"E0615", ExitCode::kInputOutput},
     {"E0617", ExitCode::kBadInput},
     {"E0618", ExitCode::kBadInput},
-    {"E072", ExitCode::kUsage},      // analysis of what the machine does not have
-    {"E0722", ExitCode::kBadInput},  // module that records no formulas
+    {"E072", ExitCode::kUsage},         // analysis of what the machine does not have
+    {"E0722", ExitCode::kBadInput},     // module that records no formulas
+    {"E0829", ExitCode::kUsage},        // feature or alternative that the study does not have
+    {"E0830", ExitCode::kInputOutput},  // study that cannot be read
 }};
 
 }  // namespace

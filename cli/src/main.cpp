@@ -96,6 +96,7 @@ ExitCode Main(int argc, char** argv, Session& session) {
                          AddDescribe,
                          AddSolve,
                          AddAnalyze,
+                         AddSynthesize,
                          AddMeasure,
                          AddCalibrate,
                          AddErrorBudget,

@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// kompono schema: JSON Schema of layout files, for editors.
+// kompono schema: JSON Schema of layout and study files, for editors.
 #include "session.hpp"
 
+#include <memory>
+#include <string>
+
 #include "kompono/layout/layout.hpp"
+#include "kompono/synthesis/study.hpp"
 
 namespace kompono::cli {
 namespace {
 
 constexpr const char* kExamples =
-    "  kompono schema > layout.schema.json      then name it in the editor's TOML settings";
+    "  kompono schema > layout.schema.json      then name it in the editor's TOML settings\n"
+    "  kompono schema study > study.schema.json";
 
 }  // namespace
 
 void AddSchema(CLI::App& root, Session& session) {
-  const CLI::App* command =
-      session.Command(root, "schema", "JSON Schema of layout files, for editors", kExamples);
-  session.OnRun(command, [&session] {
-    std::string schema = layout::LayoutSchema(session.registry());
+  CLI::App* command =
+      session.Command(root, "schema", "JSON Schema of layout and study files", kExamples);
+  const auto kind = std::make_shared<std::string>("layout");
+  session.Choices(command->add_option("KIND", *kind, "layout (if not given) or study"),
+                  {"layout", "study"});
+  session.OnRun(command, [&session, kind] {
+    std::string schema = *kind == "study" ? synthesis::StudySchema(session.registry())
+                                          : layout::LayoutSchema(session.registry());
     if (!schema.ends_with('\n')) schema += '\n';
     session.console.Out(schema);
     return ExitCode::kOk;

@@ -75,6 +75,7 @@ void AddSchema(CLI::App& root, Session& session);
 void AddDescribe(CLI::App& root, Session& session);
 void AddSolve(CLI::App& root, Session& session);
 void AddAnalyze(CLI::App& root, Session& session);
+void AddSynthesize(CLI::App& root, Session& session);
 void AddMeasure(CLI::App& root, Session& session);
 void AddCalibrate(CLI::App& root, Session& session);
 /// A subcommand of calibrate.

@@ -73,10 +73,8 @@ INSTANTIATE_TEST_SUITE_P(OfMotions,
 
 /// Bohez: three translations and any two of the three rotations.
 TEST(Counts, OfThreePairsAddUp) {
-  for (const auto& [equivalence, count] :
-       std::map<std::string, unsigned>{{"string", 2160},
-                                       {"distribution", 1152},
-                                       {"relative_motion", 162}}) {
+  for (const auto& [equivalence, count] : std::map<std::string, unsigned>{
+           {"string", 2160}, {"distribution", 1152}, {"relative_motion", 162}}) {
     Count sum = 0;
     for (const std::string pair : {"AB", "AC", "BC"}) {
       const Outcome outcome = BuildStudy(PlainStudy("XYZ" + pair, equivalence));
@@ -103,12 +101,18 @@ TEST(Counts, TheTwelveVerticalLayoutsAreExpressed) {
     return true;
   });
   EXPECT_EQ(texts.size(), 12U);
-  for (const std::string text : {"part X Y O Z C_v tool", "part Y X O Z C_v tool",
-                                 "part X O Y Z C_v tool", "part X O Z Y C_v tool",
-                                 "part Y O X Z C_v tool", "part Y O Z X C_v tool",
-                                 "part O X Y Z C_v tool", "part O Y X Z C_v tool",
-                                 "part O X Z Y C_v tool", "part O Y Z X C_v tool",
-                                 "part O Z X Y C_v tool", "part O Z Y X C_v tool"}) {
+  for (const std::string text : {"part X Y O Z C_v tool",
+                                 "part Y X O Z C_v tool",
+                                 "part X O Y Z C_v tool",
+                                 "part X O Z Y C_v tool",
+                                 "part Y O X Z C_v tool",
+                                 "part Y O Z X C_v tool",
+                                 "part O X Y Z C_v tool",
+                                 "part O Y X Z C_v tool",
+                                 "part O X Z Y C_v tool",
+                                 "part O Y Z X C_v tool",
+                                 "part O Z X Y C_v tool",
+                                 "part O Z Y X C_v tool"}) {
     EXPECT_TRUE(texts.contains(text)) << text;
     const auto formula = formula::ParseFormula(text);
     ASSERT_TRUE(formula);

@@ -345,6 +345,7 @@ void StudySpaceBuilder::AddPlaces() {
         alternative.tags.push_back(side + ":" + name);
         alternative.tags.push_back("motion:" + name);
       }
+      alternative.tags.push_back(side + (item.translates ? ":translation" : ":rotation"));
       if (item.module >= 0) {
         const std::string& block = study().modules[static_cast<std::size_t>(item.module)].name;
         alternative.tags.push_back(side + ":" + block);

@@ -50,7 +50,8 @@ class StudySpaceBuilder {
   void ForbidByRule(const StudyRule& rule, int number);
   /// Alternatives that meet the term; complains of tags that no alternative has.
   [[nodiscard]] std::optional<std::vector<Choice>> Meeting(const Term& term, const StudyRule& rule);
-  void JudgeBlur(const StudyRule& rule);
+  [[nodiscard]] bool MaySwap(const Choice& a, const Choice& b) const;
+  void JudgeBlur(const StudyRule& rule, bool merges);
   void JudgeLayouts();
   [[nodiscard]] SourceSpan PlaceOf(const Choice& choice, const Candidate& candidate) const;
   void JudgeReference();

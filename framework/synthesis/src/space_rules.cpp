@@ -238,7 +238,7 @@ void StudySpaceBuilder::ForbidByRule(const StudyRule& rule, int number) {
   const auto first = Meeting(rule.forbid.front(), rule);
   const auto second = Meeting(rule.forbid.back(), rule);
   if (!first || !second) return;
-  JudgeBlur(rule);
+  bool merges = false;
   std::size_t forbidden = 0;
   const auto is_place = [this](const Choice& choice) {
     return choice.feature >= made_.first_place_ &&
@@ -249,6 +249,7 @@ void StudySpaceBuilder::ForbidByRule(const StudyRule& rule, int number) {
       if (rule.ordered) {
         if (!is_place(a) || !is_place(b) || a.feature >= b.feature) continue;
         made_.space_.Forbid(a, b, number);
+        merges = merges || MaySwap(a, b);
       } else if (a == b) {
         made_.space_.Forbid(a, number);
       } else if (rule.forbid.size() == 2 && a.feature != b.feature) {
@@ -259,6 +260,7 @@ void StudySpaceBuilder::ForbidByRule(const StudyRule& rule, int number) {
       ++forbidden;
     }
   }
+  JudgeBlur(rule, merges);
   if (forbidden > 0) return;
   Say(Severity::kWarning,
       codes::kIdleRule,
@@ -267,8 +269,17 @@ void StudySpaceBuilder::ForbidByRule(const StudyRule& rule, int number) {
       "its terms are never met by alternatives of different features");
 }
 
+/// Whether the equivalence takes both orders of these neighbours for the same.
+bool StudySpaceBuilder::MaySwap(const Choice& a, const Choice& b) const {
+  const auto& first = made_.places_[static_cast<std::size_t>(a.alternative)];
+  const auto& second = made_.places_[static_cast<std::size_t>(b.alternative)];
+  return first.part_side == second.part_side && first.item != second.item &&
+         made_.items_[static_cast<std::size_t>(first.item)].translates &&
+         made_.items_[static_cast<std::size_t>(second.item)].translates;
+}
+
 /// Rules that ask for more than the equivalence keeps apart.
-void StudySpaceBuilder::JudgeBlur(const StudyRule& rule) {
+void StudySpaceBuilder::JudgeBlur(const StudyRule& rule, bool merges) {
   const auto asks = [&rule](std::string_view prefix) {
     return std::any_of(rule.forbid.begin(), rule.forbid.end(), [prefix](const Term& term) {
       return std::any_of(term.begin(), term.end(), [prefix](const std::string& tag) {
@@ -277,9 +288,8 @@ void StudySpaceBuilder::JudgeBlur(const StudyRule& rule) {
     });
   };
   const bool sides = asks("part:") || asks("tool:") || asks("side:") || asks("base:");
-  const bool blurred =
-      (study().equivalence == Equivalence::kRelativeMotion && sides) ||
-      (study().equivalence != Equivalence::kString && (rule.ordered || asks("place:")));
+  const bool blurred = (study().equivalence == Equivalence::kRelativeMotion && sides) ||
+                       (study().equivalence != Equivalence::kString && (merges || asks("place:")));
   if (!blurred) return;
   Say(Severity::kWarning,
       codes::kBlurredRule,

@@ -32,6 +32,20 @@ std::vector<std::string> NamesOf(const List& list) {
   return names;
 }
 
+/// Whether one of the module's sets of letters consists of these motions; any will do if it has
+/// none.
+bool Asks(const StudyModule& module, const std::vector<formula::Axis>& motions) {
+  if (module.letters.empty()) return true;
+  return std::any_of(module.letters.begin(), module.letters.end(), [&](const std::string& set) {
+    std::size_t length = 0;
+    for (const formula::Axis& axis : motions) {
+      if (set.find(axis.Name()) == std::string::npos) return false;
+      length += axis.Name().size();
+    }
+    return length == set.size();
+  });
+}
+
 std::optional<int> SignOf(const toml::node& node) {
   const auto text = node.value_exact<std::string>();
   if (text == "+") return 1;
@@ -150,6 +164,7 @@ void StudyReader::FindMounts(const plugin::ModuleDescription& description, Study
       for (std::size_t i = 0; i < motions; ++i) {
         if ((subset >> i & 1U) != 0) wanted.push_back(study_.motions[i].axis);
       }
+      if (!Asks(module, wanted)) continue;
       // As it stands is best: a mechanism of all three letters of a kind may count along its own.
       if (layout::FitLetters(description.letters, {}, wanted).ok()) {
         turns.insert({0, 0, 0});

@@ -23,8 +23,8 @@ Json ByName(Json value) {
 /// A tag or a list of tags, one or two of them, or exactly two.
 Json Terms(int least) {
   const Json tag{{"type", "string"}};
-  const Json term{{"anyOf",
-                   Json::array({tag, Json{{"type", "array"}, {"items", tag}, {"minItems", 1}}})}};
+  const Json term{
+      {"anyOf", Json::array({tag, Json{{"type", "array"}, {"items", tag}, {"minItems", 1}}})}};
   return {{"type", "array"}, {"items", term}, {"minItems", least}, {"maxItems", 2}};
 }
 
@@ -39,8 +39,7 @@ Json Values() {
                    {"required", Json::array({"range"})},
                    {"additionalProperties", false}};
   return ByName(
-      {{"anyOf",
-        Json::array({Json{{"type", "number"}}, Json{{"type", "array"}}, levels, range})}});
+      {{"anyOf", Json::array({Json{{"type", "number"}}, Json{{"type", "array"}}, levels, range})}});
 }
 
 Json Modes() {

@@ -24,8 +24,13 @@
 /// Features, in this order: `grouping` (which motions are plain axes, which modules realise the
 /// others), `part_end`, `tool_end`, `base`, the places `p1`, `p2`, … from the workpiece to the tool
 /// (an item on the part's side, O, an item on the tool's side, or "-" behind the last one), then
-/// for each module `<name>.mount`, `<name>.mode` and `<name>.<parameter>` ("none" where it is not
-/// used). A feature with one alternative only is left out, except `grouping` and the places.
+/// for each module `<name>.mount`, `<name>.mode` and `<name>.<parameter>` as far as there is
+/// something to choose ("none" where the module is not used).
+///
+/// Tags for rules: `plain:X`, `block:drive`, `module:lambda`, `item:(XY):drive` on groupings;
+/// `end:sheet`, `unit:jet_head` on ends; `base:open`; on items at their places `motion:X`,
+/// `part:X`, `tool:X`, `part:drive`, `part:translation`, `tool:rotation` (at least one),
+/// `side:part`, `place:1`; `mount:drive=flat`, `mode:drive=++-`, `level:drive.L2=820`.
 namespace kompono::synthesis {
 
 /// A plain axis or a group that a module realises.
