@@ -29,7 +29,6 @@ range = [-200, 300]
 range = [0, 100]
 [modules.drive]
 module = "lambda"
-letters = ["XY"]
 home = { Y = 600 }
 modes = [{}, { q1 = "-" }]
 [modules.drive.parameters]
@@ -88,7 +87,18 @@ TEST(Candidate, GroupsHaveOneMemberOfEveryClass) {
   EXPECT_EQ(ours, std::multiset<std::string>(classes.begin(), classes.end()));
 }
 
-/// Translations only: wherever the axes are, the tool's place in the part is the motions' values.
+bool OnPartSide(const StudySpace& space, const Candidate& candidate, char letter) {
+  for (const Candidate::Placed& placed : candidate.chain) {
+    for (const int motion : space.items()[static_cast<std::size_t>(placed.item)].motions) {
+      const char theirs = space.study().motions[static_cast<std::size_t>(motion)].axis.letter;
+      if (theirs == letter) return placed.part_side;
+    }
+  }
+  return false;
+}
+
+/// Translations only: however a mechanism is mounted and wherever the axes are, the tool's place in
+/// the part is the motions' values.
 TEST(Candidate, PutsEveryLayoutIntoTheSameWorkZone) {
   const StudySpace space = Build(kWaterjet);
   Enumeration(space.space()).VisitAll([&](Count index, const Selection& selection) {
@@ -98,6 +108,15 @@ TEST(Candidate, PutsEveryLayoutIntoTheSameWorkZone) {
     // Middles of the ranges: 50, 50, 50.
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(X_WT.p[i], 50.0, 1e-9) << CountText(index);
     EXPECT_TRUE(X_WT.R.isApprox(Matrix3<double>::Identity(), 1e-12));
+    for (std::size_t k = 0; k < machine.coordinates().size(); ++k) {
+      const char letter = machine.coordinates()[k].letter;
+      kinematics::VectorXd z = machine.home();
+      z[static_cast<Eigen::Index>(k)] += 1.0;
+      const auto moved = machine.ToolPose(z, machine.nominal());
+      Vector3<double> expected = Vector3<double>::Zero();
+      expected[letter - 'X'] = OnPartSide(space, candidate, letter) ? -1.0 : 1.0;
+      EXPECT_TRUE((moved.p - X_WT.p).isApprox(expected, 1e-9)) << CountText(index) << letter;
+    }
     return !testing::Test::HasFailure();
   });
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A candidate as a layout file.
+#include "end_tables.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,21 +47,45 @@ class LayoutWriter {
     Line("kompono = 1");
     Line("name = {}", Quoted(fmt::format("{}, layout {}", study_.name, candidate_.index)));
     Line("formula = {}", Quoted(formula::Canonical(space_.FormulaOf(candidate_))));
-    for (const Candidate::Placed& placed : candidate_.chain) {
-      const Item& item = space_.items()[static_cast<std::size_t>(placed.item)];
-      if (item.module < 0) {
-        WriteAxis(study_.motions[static_cast<std::size_t>(item.motions[0])], placed.part_side);
-      } else {
-        WriteBlock(item, BlockOf(item), placed.part_side);
-      }
-    }
-    for (const int end : {candidate_.part_end, candidate_.tool_end}) {
-      text_ += study_.ends[static_cast<std::size_t>(end)].tables;
-    }
+    const Matrix3<double> R_tool = WriteSide(false);
+    const Matrix3<double> R_part = WriteSide(true);
+    text_ += TurnedTables(EndOf(candidate_.part_end), R_part.transpose());
+    text_ += TurnedTables(EndOf(candidate_.tool_end), R_tool.transpose());
     return std::move(text_);
   }
 
  private:
+  [[nodiscard]] const EndChoice& EndOf(int end) const {
+    return study_.ends[static_cast<std::size_t>(end)];
+  }
+
+  /// The items of one side from the base outward. A platform keeps the turn of its mount and hands
+  /// it on; what stands on it is turned back, so that letters mean the same directions everywhere.
+  /// Returns how the last item's frame lies in the base's.
+  Matrix3<double> WriteSide(bool part_side) {
+    std::vector<Candidate::Placed> side;
+    for (const Candidate::Placed& placed : candidate_.chain) {
+      if (placed.part_side == part_side) side.push_back(placed);
+    }
+    if (part_side) std::reverse(side.begin(), side.end());
+    Matrix3<double> R = Matrix3<double>::Identity();
+    for (const Candidate::Placed& placed : side) {
+      const Item& item = space_.items()[static_cast<std::size_t>(placed.item)];
+      if (item.module < 0) {
+        const Motion& motion = study_.motions[static_cast<std::size_t>(item.motions[0])];
+        WriteAxis(motion, part_side, R);
+      } else {
+        const Candidate::Block& block = BlockOf(item);
+        WriteBlock(item, block, part_side);
+        const auto& turn = study_.modules[static_cast<std::size_t>(block.module)]
+                               .mounts[static_cast<std::size_t>(block.mount)]
+                               .placement.rotation_rad;
+        R = RotationXYZ(turn[0], turn[1], turn[2]);
+      }
+    }
+    return R;
+  }
+
   template <class... Values>
   void Line(fmt::format_string<Values...> format, Values&&... values) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
@@ -91,7 +116,7 @@ class LayoutWriter {
     if (drive.stiffness) Line("stiffness = {:.12g}", *drive.stiffness / kStiffnessFactor);
   }
 
-  void WriteAxis(const Motion& motion, bool part_side) {
+  void WriteAxis(const Motion& motion, bool part_side, const Matrix3<double>& R) {
     const bool rotary = motion.axis.rotary();
     const Interval way = Way(motion, part_side);
     Line("\n[axis.{}]", motion.name);
@@ -99,8 +124,19 @@ class LayoutWriter {
     Line("home = {}", Number(way.middle(), rotary));
     WriteDrive(motion.drive, rotary);
     const auto& pivot = part_side ? motion.part_pivot_mm : motion.tool_pivot_mm;
-    if (pivot != std::array<double, 3>{}) {
-      Line("position = [{}, {}, {}]", pivot[0], pivot[1], pivot[2]);
+    const Vector3<double> position = R.transpose() * Vector3<double>(pivot.data());
+    const std::array<double, 3> turn = AnglesOf(R.transpose());
+    if (!position.isZero(0.0)) {
+      Line("position = [{}, {}, {}]",
+           Cleaned(position[0]),
+           Cleaned(position[1]),
+           Cleaned(position[2]));
+    }
+    if (!R.isApprox(Matrix3<double>::Identity(), 1e-12)) {
+      Line("rotation = [{}, {}, {}]",
+           Number(turn[0], true),
+           Number(turn[1], true),
+           Number(turn[2], true));
     }
   }
 

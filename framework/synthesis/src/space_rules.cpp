@@ -166,21 +166,31 @@ void StudySpaceBuilder::ForbidModules(int rule) {
         }
       }
     }
-    if (features.mount >= 0) ForbidMounts(static_cast<int>(m), features.mount, rule);
+    ForbidMounts(static_cast<int>(m), features.mount, rule);
   }
 }
 
+/// Mounts under which the module does not realise its group. A turned mechanism hands its turn on,
+/// which a second mechanism on it could not take back: they do not go together.
 void StudySpaceBuilder::ForbidMounts(int module, int feature, int rule) {
-  const std::size_t mounts = study().modules[static_cast<std::size_t>(module)].mounts.size();
+  const std::vector<MountChoice>& mounts = study().modules[static_cast<std::size_t>(module)].mounts;
   for (std::size_t g = 0; g < made_.groupings_.size(); ++g) {
+    const Choice grouping{made_.grouping_feature_, static_cast<int>(g)};
+    std::size_t mechanisms = 0;
+    for (const int i : made_.groupings_[g].items) {
+      mechanisms += made_.items_[static_cast<std::size_t>(i)].module >= 0 ? 1U : 0U;
+    }
     for (const int i : made_.groupings_[g].items) {
       const Item& item = made_.items_[static_cast<std::size_t>(i)];
       if (item.module != module) continue;
-      for (std::size_t mount = 0; mount < mounts; ++mount) {
-        if (Realises(item, static_cast<int>(mount))) continue;
-        made_.space_.Forbid({made_.grouping_feature_, static_cast<int>(g)},
-                            {feature, static_cast<int>(mount) + 1},
-                            rule);
+      for (std::size_t mount = 0; mount < mounts.size(); ++mount) {
+        const bool turned = mounts[mount].placement.rotation_rad != std::array<double, 3>{};
+        if (Realises(item, static_cast<int>(mount)) && !(turned && mechanisms > 1)) continue;
+        if (feature < 0) {
+          made_.space_.Forbid(grouping, rule);
+        } else {
+          made_.space_.Forbid(grouping, {feature, static_cast<int>(mount) + 1}, rule);
+        }
       }
     }
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study_reader.hpp"
 
+#include "end_tables.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <utility>
 
 #include "kompono/diagnostics/suggestion.hpp"
@@ -34,37 +34,6 @@ void CollectLeafTables(const toml::table& tables, std::vector<std::string>& unit
     if (auto module = TextAt(*table, "module")) units.push_back(std::move(*module));
   }
   std::sort(units.begin(), units.end());
-}
-
-/// `inner` under its name (and the name of the table it stands in) as a table with a heading of its
-/// own, so that several follow one another whatever they were in the study.
-void PrintTable(std::ostringstream& out,
-                std::string_view outer,
-                std::string_view name,
-                const toml::node& inner) {
-  toml::table one;
-  one.insert(name, inner);
-  if (toml::table* table = one.get_as<toml::table>(name)) table->is_inline(false);
-  if (!outer.empty()) {
-    toml::table around;
-    around.insert(outer, std::move(one));
-    one = std::move(around);
-  }
-  out << '\n' << one << '\n';
-}
-
-std::string TablesText(const toml::table& tables) {
-  std::ostringstream out;
-  for (const auto& [key, node] : tables) {
-    const toml::table* table = node.as_table();
-    const bool named = key.str() == "axis" || key.str() == "block";
-    if (table == nullptr || !named) {
-      PrintTable(out, "", key.str(), node);
-      continue;
-    }
-    for (const auto& [name, inner] : *table) PrintTable(out, key.str(), name.str(), inner);
-  }
-  return out.str();
 }
 
 }  // namespace
