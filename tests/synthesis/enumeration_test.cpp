@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counting, numbering and walking against each other, against plain loops and against clingo.
 #include "studies.hpp"
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -188,28 +191,44 @@ std::string Program(const Space& space) {
   return text + "#show.\n";
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr double kFactor = 1.0;  // instrumented, while clingo is not
+#else
+constexpr double kFactor = 10.0;
+#endif
+
 TEST(Enumeration, AgreesWithClingoAndIsTenTimesFaster) {
   const Space space = RandomSpace(12, 6, 0.144, 11, 1);
   EXPECT_EQ(CountText(space.Raw()), "2176782336");
-  const auto folder = std::filesystem::temp_directory_path();
-  const std::filesystem::path program = folder / "kompono_space.lp";
-  const std::filesystem::path result = folder / "kompono_space.out";
+  const std::filesystem::path program =
+      std::filesystem::temp_directory_path() / fmt::format("kompono_space_{}.lp", getpid());
+  std::filesystem::path result = program;
+  result.replace_extension("out");
   std::ofstream(program) << Program(space);
   const std::string command =
-      "clingo 0 -q --project=no --outf=0 " + program.string() + " > " + result.string() + " 2>&1";
-  int status = 0;
-  const double theirs = SecondsOf([&] { status = std::system(command.c_str()); });
-  ASSERT_NE(status / 256, 127) << "clingo (package gringo) is missing: ./dev setup installs it";
-  std::ifstream in(result);
-  std::string line;
-  std::string models;
-  while (std::getline(in, line)) {
-    if (line.starts_with("Models")) models = line.substr(line.rfind(' ') + 1);
-  }
+      fmt::format("clingo 0 -q --outf=0 {} > {} 2>&1", program.string(), result.string());
   Count count = 0;
-  const double ours = SecondsOf([&] { count = Enumeration(space).count(); });
+  double ours = 1e9;
+  double theirs = 1e9;
+  int status = 0;
+  for (int run = 0; run < 3; ++run) {  // the fastest: other programs run too
+    ours = std::min(ours, SecondsOf([&] { count = Enumeration(space).count(); }));
+    theirs = std::min(theirs, SecondsOf([&] { status = std::system(command.c_str()); }));
+  }
+  ASSERT_NE(WEXITSTATUS(status), 127) << "clingo is missing: ./dev test installs it (gringo)";
+  std::string models;
+  {
+    std::ifstream in(result);
+    std::string line;
+    while (std::getline(in, line)) {
+      if (line.starts_with("Models")) models = line.substr(line.rfind(' ') + 1);
+    }
+  }
+  std::filesystem::remove(program);
+  std::filesystem::remove(result);
   EXPECT_EQ(CountText(count), models);
-  EXPECT_LT(10.0 * ours, theirs) << "ours " << ours << " s, clingo's " << theirs << " s";
+  EXPECT_LT(kFactor * ours, theirs) << "ours " << ours << " s, clingo's " << theirs << " s";
+  RecordProperty("ratio", fmt::format("{:.1f}", theirs / ours));
 }
 
 }  // namespace
