@@ -219,6 +219,7 @@ std::optional<ExitCode> WriteFiles(Session& session,
                                    const MeasurementFiles& files,
                                    const ordered_json& document,
                                    const Options& options) {
+  if (!report.ok()) return std::nullopt;  // stdout has said why
   if (!options.report.empty()) {
     if (const auto failure = WriteFileAside(options.report, document.dump(2) + "\n", options.force))
       return session.Refuse(*failure);
@@ -231,7 +232,7 @@ std::optional<ExitCode> WriteFiles(Session& session,
       return session.Refuse(*failure);
     session.console.Say(options.html + " written");
   }
-  if (options.out.empty() || !report.ok()) return std::nullopt;
+  if (options.out.empty()) return std::nullopt;
   const Parsed<std::string> layout =
       calibration::CalibratedLayout(machine, session.registry(), report, SourceText(files));
   if (!layout) return session.Refuse(layout.error());

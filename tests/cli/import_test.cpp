@@ -3,6 +3,7 @@
 #include "program.hpp"
 
 #include <cmath>
+#include <sstream>
 
 namespace kompono::cli_test {
 namespace {
@@ -61,6 +62,56 @@ TEST_F(Import, OtherFilesAreRefused) {
   const Outcome alone = Run({"import", "klipper_delta", "run.csv"});
   EXPECT_EQ(alone.code, 5) << alone.err;
   EXPECT_THAT(alone.err, HasSubstr("run.json"));
+}
+
+TEST_F(Import, AConfigurationBecomesALayoutAndARun) {
+  std::string config =
+      "[printer]\nkinematics: delta\ndelta_radius: 161.75\n[stepper_a]\nstep_distance: 0.01\n"
+      "position_endstop: 421\narm_length: 345\n[stepper_b]\nstep_distance: 0.01\n"
+      "[stepper_c]\nstep_distance: 0.01\n[delta_calibrate]\n";
+  std::size_t count = 0;
+  for (const std::string& line : Lines(Read(csv_))) {
+    if (!line.starts_with("height,")) continue;
+    std::istringstream cells(line);
+    std::vector<std::string> cell(5);
+    for (std::string& text : cell) std::getline(cells, text, ',');
+    const std::string key = "height" + std::to_string(count++);
+    config.append(key).append(": ").append(cell[1]).append("\n").append(key).append("_pos: ");
+    for (std::size_t i = 2; i < 5; ++i) {
+      config.append(std::to_string(100.0 * std::stod(cell[i]))).append(i < 4 ? "," : "\n");
+    }
+  }
+  Write("printer.cfg", config);
+  const Outcome outcome = Run(
+      {"import", "klipper_config", "printer.cfg", "--layout", "delta.toml", "--run", "run.csv"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("7 heights and 0 distances probed"));
+  const nlohmann::json ours = Json({"calibrate", "delta.toml", "run.csv"});
+  ASSERT_EQ(Run({"import", "klipper_delta", csv_, "--layout", "other.toml"}).code, 0);
+  const nlohmann::json theirs = Json({"calibrate", "other.toml", csv_});
+  EXPECT_NEAR(ours["chi_squared"].get<double>(),
+              theirs["chi_squared"].get<double>(),
+              1e-3 * theirs["chi_squared"].get<double>());
+  Write("empty.cfg", "[printer]\nkinematics: delta\n");
+  const Outcome bad = Run({"import", "klipper_config", "empty.cfg", "--layout", "no.toml"});
+  EXPECT_EQ(bad.code, 3);
+  EXPECT_THAT(bad.err, HasSubstr("[printer] has no 'delta_radius'"));
+}
+
+TEST_F(Import, TrackerPointsBecomeMeasurements) {
+  const std::string machine = Machine("hexapod_reference");
+  Write("readings.csv",
+        "name,q1,q2,q3,q4,q5,q6\n"
+        "A,955,955,955,955,955,955\nB,960,955,955,955,955,955\nC,955,955,960,955,955,955\n"
+        "D,955,955,955,955,962,955\n");
+  Write("points.txt", "A 0 0 1\nB 0 1 1\n");
+  const Outcome few =
+      Run({"import", "tracker", "points.txt", "readings.csv", "--layout", machine, "--align"});
+  EXPECT_EQ(few.code, 3);
+  EXPECT_THAT(few.err, HasSubstr("[E0467]"));
+  Write("points.txt", "A 0 0\n");
+  EXPECT_THAT(Run({"import", "tracker", "points.txt", "readings.csv", "--layout", machine}).err,
+              HasSubstr("[E0466]"));
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ inline constexpr CodeTitle kFewPoses{"E0442", "too few poses inside the ranges"}
 inline constexpr CodeTitle kOtherDrives{"E0443", "true machine with other drives"};
 inline constexpr CodeTitle kBadSimulation{"E0444", "simulation option that makes no sense"};
 inline constexpr CodeTitle kNoStiffness{"E0445", "dynamic error without stiffness"};
-inline constexpr CodeTitle kKlipperConfig{"E0446", "no printer.cfg of a delta"};
-inline constexpr CodeTitle kTrackerLine{"E0447", "line that is no point of a tracker"};
-inline constexpr CodeTitle kTrackerMismatch{"E0448", "points that do not go with the readings"};
+inline constexpr CodeTitle kKlipperConfig{"E0465", "no printer.cfg of a delta"};
+inline constexpr CodeTitle kTrackerLine{"E0466", "line that is no point of a tracker"};
+inline constexpr CodeTitle kTrackerMismatch{"E0467", "points that do not go with the readings"};
 inline constexpr CodeTitle kNoPose{"E0451", "row at whose readings the machine has no pose"};
 inline constexpr CodeTitle kTooFew{"E0452", "fewer measured numbers than unknowns"};
 inline constexpr CodeTitle kExactFit{"W0452", "as many measured numbers as unknowns"};

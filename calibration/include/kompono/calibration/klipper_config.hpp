@@ -21,7 +21,7 @@ struct KlipperConfig {
 /// put them ("#*# "; what stands there counts more). Probed positions are steps of the motors
 /// down from the end-stops and become mm with rotation_distance, microsteps, full steps and gears,
 /// or the older step_distance.
-/// E0446 for what is missing, of the wrong form, or no delta.
+/// E0465 for what is missing, of the wrong form, or no delta.
 [[nodiscard]] Parsed<KlipperConfig> ReadKlipperConfig(std::string_view text, std::string_view file);
 
 }  // namespace kompono::calibration

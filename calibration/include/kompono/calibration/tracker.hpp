@@ -26,7 +26,7 @@ struct TrackerPoint {
 /// Lines "x y z" or "name x y z", separated by blanks, tabs, semicolons or commas; what follows on
 /// a line is passed over, as are comments (#, //) and a heading without numbers. With tabs or
 /// semicolons decimals may have commas. `mm_per_unit`: 1000 for a file in metres.
-/// E0447 for lines that are no points, all of them, and E0402 for a file without any.
+/// E0466 for lines that are no points, all of them, and E0402 for a file without any.
 [[nodiscard]] Parsed<std::vector<TrackerPoint>> ReadTrackerPoints(std::string_view text,
                                                                   std::string_view file,
                                                                   double mm_per_unit = 1.0);
@@ -45,7 +45,7 @@ struct TrackerMeasurements {
 };
 
 /// Joins the points with a table of readings (columns as in measurement files): by name if both
-/// have names, else line by line. E0448 if they do not match or cannot be aligned, else as
+/// have names, else line by line. E0467 if they do not match or cannot be aligned, else as
 /// ParseMeasurements.
 [[nodiscard]] Parsed<TrackerMeasurements> JoinTracker(const std::vector<TrackerPoint>& points,
                                                       std::string_view points_file,
