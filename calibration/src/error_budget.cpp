@@ -132,8 +132,11 @@ class BudgetMaker {
     if (options_.mass_kg == 0.0) return;
     const Eigen::MatrixXd G = worker.tool_by_readings().topRows<3>();
     const Eigen::Matrix3d give = G * compliance_.asDiagonal() * G.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(give);
-    dynamic_.push_back(axes.eigenvalues()[2] * options_.mass_kg * acceleration_ * kNewtonPerKgMm);
+    const double compliance =
+        options_.direction
+            ? options_.direction->normalized().dot(give * options_.direction->normalized())
+            : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(give).eigenvalues()[2];
+    dynamic_.push_back(compliance * options_.mass_kg * acceleration_ * kNewtonPerKgMm);
   }
 
   [[nodiscard]] Budget Summed() const {

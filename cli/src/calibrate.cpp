@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // kompono calibrate: the real geometry from measurements.
 #include "calibration_files.hpp"
+#include "campaign.hpp"
 #include "codes.hpp"
 #include "files.hpp"
 #include "patterns.hpp"
@@ -18,6 +19,7 @@
 #include "kompono/calibration/identification.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 #include "kompono/calibration/report.hpp"
+#include "kompono/calibration/zone_accuracy.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -34,6 +36,7 @@ constexpr const char* kExamples =
     "  kompono calibrate machine.toml points.csv --free 'drive.*,open_base' --held-out 0.3\n"
     "  kompono calibrate machine.toml points.csv --prior 'drive.L1=0.05' --report report.json\n"
     "  kompono calibrate machine.toml points.csv --group offsets --prior-tolerances 3\n"
+    "  kompono calibrate campaign.toml --map known.csv         files and layout stand in it\n"
     "  kompono calibrate delta.toml run.csv --published run.json        against Klipper's own fit";
 
 struct Options {
@@ -50,7 +53,9 @@ struct Options {
   double drive_sigma_mm = 0.0;
   double drive_sigma_deg = 0.0;
   std::string gauge = "minimum";
-  std::string html;
+  std::string html, map;
+  int map_steps = 5;
+  std::vector<MeasurementSource> sources;  ///< the measurements, or those of a description
   int folds = 0;
   bool residuals = false;
   bool force = false;
@@ -242,6 +247,35 @@ std::optional<ExitCode> WriteFiles(Session& session,
   return std::nullopt;
 }
 
+/// The zone's map as a file, and its figures.
+std::optional<ExitCode> WriteMap(Session& session,
+                                 const Machine& machine,
+                                 const CalibrationReport& report,
+                                 const MeasurementFiles& files,
+                                 const Options& options,
+                                 ordered_json* document) {
+  if (options.map.empty() || !report.ok()) return std::nullopt;
+  const Parsed<calibration::ZoneAccuracy> zone =
+      calibration::ToolOverZone(machine, files.set, report, options.map_steps);
+  if (!zone) return session.Refuse(zone.error());
+  (*document)["zone"] = {{"points", zone->points.size()},
+                         {"out_of_reach", zone->out_of_reach},
+                         {"tool_sigma_rms_mm", zone->rms_mm},
+                         {"tool_sigma_max_mm", zone->max_mm},
+                         {"tool_sigma_max_deg", zone->max_rad * kDegPerRad}};
+  if (const auto failure =
+          WriteFileAside(options.map, calibration::ZoneCsv(machine, *zone), options.force))
+    return session.Refuse(*failure);
+  session.console.Say(
+      fmt::format("{} written: over {} of the work zone the tool point is known to {:.4f} mm RMS, "
+                  "{:.4f} mm at worst",
+                  options.map,
+                  Counted(zone->points.size(), "point"),
+                  zone->rms_mm,
+                  zone->max_mm));
+  return std::nullopt;
+}
+
 ExitCode Identify(Session& session,
                   const Machine& machine,
                   const MeasurementFiles& files,
@@ -274,20 +308,45 @@ ExitCode Identify(Session& session,
     if (comparison) session.console.Out(ComparisonText(*comparison));
     session.console.Report(report.diagnostics);  // under --json they stand in the document
   }
+  if (const auto failed = WriteMap(session, machine, report, files, options, &document))
+    return *failed;
   const auto failed = WriteFiles(session, machine, report, files, document, options);
   if (failed) return *failed;
   if (session.json) session.console.Json(std::move(document));
   return ExitOf(report);
 }
 
-ExitCode Run(Session& session, const Options& options) {
-  if (options.file.empty() || options.measurements.empty()) {
+/// What a measurement description says goes where the command line says nothing.
+Parsed<Options> WithCampaign(Options options) {
+  for (const std::string& name : options.measurements) options.sources.push_back({.name = name});
+  if (!options.measurements.empty() || !options.file.ends_with(".toml")) return options;
+  const Parsed<std::string> text = ReadWhole(options.file);
+  if (!text) return tl::unexpected(text.error());
+  if (!IsCampaign(*text)) return options;
+  Parsed<Campaign> campaign = ReadCampaign(*text, options.file);
+  if (!campaign) return tl::unexpected(std::move(campaign.error()));
+  options.file = campaign->layout;
+  options.sources = std::move(campaign->files);
+  if (options.free.empty() && options.groups.empty()) {
+    options.free = std::move(campaign->free);
+    options.groups = std::move(campaign->groups);
+  }
+  if (options.lock.empty()) options.lock = std::move(campaign->lock);
+  if (options.prior.empty()) options.prior = std::move(campaign->prior);
+  return options;
+}
+
+ExitCode Run(Session& session, const Options& given) {
+  const Parsed<Options> completed = WithCampaign(given);
+  if (!completed) return session.Refuse(completed.error());
+  const Options& options = *completed;
+  if (options.file.empty() || options.sources.empty()) {
     return session.Refuse(Diagnostic{
         .code = std::string(codes::kUsage.code),
         .message = options.file.empty() ? "LAYOUT is required" : "MEASUREMENTS is required",
         .help = "kompono calibrate LAYOUT MEASUREMENTS..., or kompono calibrate plan LAYOUT"});
   }
-  for (const std::string& file : {options.out, options.report, options.html}) {
+  for (const std::string& file : {options.out, options.report, options.html, options.map}) {
     if (const auto exists = RefuseToOverwrite(file, options.force)) return session.Refuse(*exists);
   }
   ExitCode code = ExitCode::kOk;
@@ -298,8 +357,7 @@ ExitCode Run(Session& session, const Options& options) {
       IdentifyOptionsOf(*machine, session.registry(), options, problems);
   if (!problems.empty()) return session.Refuse(problems);
   Diagnostics notes;
-  const Parsed<MeasurementFiles> files =
-      ReadMeasurementFiles(options.measurements, *machine, notes);
+  const Parsed<MeasurementFiles> files = ReadMeasurementFiles(options.sources, *machine, notes);
   if (!files) {
     notes.insert(notes.end(), files.error().begin(), files.error().end());
     return session.Refuse(notes);
@@ -373,8 +431,11 @@ void AddCalibrate(CLI::App& root, Session& session) {
   const auto file = [&](const char* name, std::string& value, const char* text) {
     session.Hint(command->add_option(name, value, text)->type_name("FILE"), ValueHint::Kind::kFile);
   };
-  session.Hint(command->add_option("LAYOUT", options->file, "Layout with the nominal geometry"),
-               ValueHint::Kind::kFile);
+  session.Hint(
+      command->add_option("LAYOUT",
+                          options->file,
+                          "Layout with the nominal geometry, or a description of measurements"),
+      ValueHint::Kind::kFile);
   session.Hint(
       command->add_option("MEASUREMENTS",
                           options->measurements,
@@ -385,6 +446,10 @@ void AddCalibrate(CLI::App& root, Session& session) {
   file("--published", options->published, "A delta run's description: compare with Klipper's fit");
   file("--report", options->report, "The whole report as JSON, for kompono catalog add --report");
   file("--html", options->html, "The report as one HTML page with its diagrams");
+  file("--map", options->map, "CSV of how well the tool point is known over the work zone");
+  command->add_option("--map-steps", options->map_steps, "Values of each linear coordinate (5)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100));
   command->add_option("--folds", options->folds, "Judge each row by a fit without it, in N parts")
       ->type_name("N")
       ->check(CLI::Range(2, 1000));

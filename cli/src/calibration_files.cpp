@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <toml++/toml.h>
@@ -20,6 +21,25 @@ constexpr std::string_view kDigestMark = " (sha256 ";
 constexpr std::size_t kDigestLength = 64;
 constexpr double kMicrometresPerMm = 1000.0;
 
+/// Where the fixtures of a further file stand in those of all: of the same kind and name is the
+/// same, and known if any file knows it.
+std::vector<int> Merge(const std::vector<calibration::Fixture>& part,
+                       std::vector<calibration::Fixture>& all) {
+  std::vector<int> indices;
+  for (const calibration::Fixture& fixture : part) {
+    const auto same = std::find_if(all.begin(), all.end(), [&fixture](const auto& other) {
+      return other.kind == fixture.kind && other.name == fixture.name;
+    });
+    indices.push_back(static_cast<int>(same - all.begin()));
+    if (same == all.end()) {
+      all.push_back(fixture);
+    } else if (fixture.known && !same->known) {
+      *same = fixture;
+    }
+  }
+  return indices;
+}
+
 void Append(calibration::MeasurementSet part, bool first, calibration::MeasurementSet& set) {
   if (first) {
     set = std::move(part);
@@ -28,8 +48,12 @@ void Append(calibration::MeasurementSet part, bool first, calibration::Measureme
   // Rows of several files: neither their texts nor their lines go together.
   set.file += ", " + part.file;
   set.text.clear();
-  for (calibration::Measurement& row : part.measurements)
+  const std::vector<int> fixtures = Merge(part.fixtures, set.fixtures);
+  for (calibration::Measurement& row : part.measurements) {
+    if (row.target >= 0) row.target = fixtures[static_cast<std::size_t>(row.target)];
+    if (row.fixture >= 0) row.fixture = fixtures[static_cast<std::size_t>(row.fixture)];
     set.measurements.push_back(std::move(row));
+  }
   for (std::size_t i = 0; i < set.measurements.size(); ++i) {
     set.measurements[i].row = static_cast<int>(i) + 1;
     set.measurements[i].line = 0;
@@ -75,7 +99,7 @@ std::optional<double> PooledRms(const nlohmann::json& errors, const std::string&
 
 }  // namespace
 
-Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<std::string>& names,
+Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<MeasurementSource>& sources,
                                               const kinematics::Machine& machine,
                                               Diagnostics& notes) {
   MeasurementFiles out;
@@ -83,7 +107,8 @@ Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<std::string>& na
   const auto complain = [&problems](const Diagnostics& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
-  for (const std::string& name : names) {
+  for (const MeasurementSource& source : sources) {
+    const std::string& name = source.name;
     const Parsed<std::string> text = ReadWhole(name);
     if (!text) {
       complain(text.error());
@@ -94,6 +119,11 @@ Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<std::string>& na
     if (!set) {
       complain(set.error());
       continue;
+    }
+    for (calibration::Measurement& row : set->measurements) {
+      if (!row.sigma_mm) row.sigma_mm = source.sigma_mm;
+      if (!row.sigma_rad) row.sigma_rad = source.sigma_rad;
+      row.held_out = row.held_out || source.held_out;
     }
     Append(std::move(*set), out.files.empty(), out.set);
     out.files.push_back({.name = name, .sha256 = catalog::Hex(catalog::Sha256Of(*text))});

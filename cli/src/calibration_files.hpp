@@ -14,6 +14,13 @@
 /// What passes from measurement files through `kompono calibrate` into the catalog.
 namespace kompono::cli {
 
+/// A file to read, and what is to be said of its rows.
+struct MeasurementSource {
+  std::string name;
+  std::optional<double> sigma_mm, sigma_rad;  ///< of rows without their own
+  bool held_out = false;                      ///< all its rows
+};
+
 struct MeasurementFile {
   std::string name;  ///< as the user named it
   std::string sha256;
@@ -25,9 +32,10 @@ struct MeasurementFiles {
 };
 
 /// All problems of all files. Rows of several files are counted through and have no line.
-[[nodiscard]] Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<std::string>& names,
-                                                            const kinematics::Machine& machine,
-                                                            Diagnostics& notes);
+[[nodiscard]] Parsed<MeasurementFiles> ReadMeasurementFiles(
+    const std::vector<MeasurementSource>& sources,
+    const kinematics::Machine& machine,
+    Diagnostics& notes);
 
 /// What a calibrated layout says of its origin: "points.csv (sha256 ...)".
 [[nodiscard]] std::string SourceText(const MeasurementFiles& files);

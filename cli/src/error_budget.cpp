@@ -20,6 +20,7 @@ using nlohmann::ordered_json;
 constexpr const char* kExamples =
     "  kompono error-budget machine.toml\n"
     "  kompono error-budget machine.toml --sigma 'open_base.x=0.3,open_base.y=0.3' --mass 4\n"
+    "  kompono error-budget machine.toml --mass 2.8 --direction X --region drive.Y=200:800\n"
     "  kompono error-budget machine.toml --true real.toml          the known errors of one machine";
 
 struct Options {
@@ -30,6 +31,7 @@ struct Options {
   std::uint64_t seed = 1;
   double mass_kg = 0.0;
   std::optional<double> acceleration;
+  std::string direction;
 };
 
 constexpr std::size_t kMostShown = 20;
@@ -106,6 +108,9 @@ ExitCode Run(Session& session, const Options& options) {
   budget_options.seed = options.seed;
   budget_options.mass_kg = options.mass_kg;
   budget_options.acceleration = options.acceleration;
+  if (!options.direction.empty()) {
+    budget_options.direction = Eigen::Vector3d::Unit(options.direction[0] - 'X');
+  }
   budget_options.region = ReadRegion(options.region, *machine, problems);
   if (!options.sigma.empty()) {
     budget_options.sigma = ReadPatternNumbers(Argument("--sigma", options.sigma),
@@ -176,6 +181,12 @@ void AddErrorBudget(CLI::App& root, Session& session) {
                    "Of the moved mass; else the slowest drive's in the layout")
       ->type_name("MM/S2")
       ->check(CLI::PositiveNumber);
+  session.Choices(command
+                      ->add_option("--direction",
+                                   options->direction,
+                                   "Of the acceleration, X, Y or Z; else the worst everywhere")
+                      ->type_name("LETTER"),
+                  {"X", "Y", "Z"});
   session.OnRun(command, [&session, options] { return Run(session, *options); });
 }
 

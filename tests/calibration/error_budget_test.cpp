@@ -105,6 +105,21 @@ TEST_F(SoMachine, DynamicErrorIsInertiaOverStiffness) {
   EXPECT_GT(budget.dynamic_mm, 0.0);
 }
 
+TEST_F(SoMachine, AcceleratedAlongXItLagsByWhatSoSays) {
+  // SO's 0.38 to 0.45 mm with its stiffness; it names no mass, and 2.8 kg gives both ends of it.
+  BudgetOptions options;
+  options.mass_kg = 2.8;
+  options.direction = Eigen::Vector3d::UnitX();
+  options.region["drive.Y"] = {200.0, 800.0};
+  const Budget budget = Of(options);
+  std::printf("along X %.3f to %.3f mm\n", budget.dynamic_least_mm, budget.dynamic_most_mm);
+  EXPECT_GE(budget.dynamic_least_mm, 0.375);
+  EXPECT_LE(budget.dynamic_most_mm, 0.455);
+  // By hand at y = 200, 1.36 and at y = 800, 1.57 times m a / k.
+  EXPECT_NEAR(budget.dynamic_least_mm, 0.28 * 1.36, 0.01);
+  EXPECT_NEAR(budget.dynamic_most_mm, 0.28 * 1.57, 0.01);
+}
+
 TEST_F(SoMachine, PartsAreThoseOfSo) {
   EXPECT_EQ(PartOf(nominal_, "open_base.x"), ErrorPart::kBase);
   EXPECT_EQ(PartOf(nominal_, "part.mount.x"), ErrorPart::kBase);

@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 namespace kompono::cli_test {
 namespace {
@@ -174,6 +175,85 @@ TEST_F(Calibrate, ResidualsOfEveryRowOnRequest) {
     return Lines(Run(arguments).out).size();
   };
   EXPECT_GE(lines({"--residuals"}), lines({}) + 60);
+}
+
+TEST_F(Calibrate, ADescriptionTiesFilesToTheirLayout) {
+  Measurements("a.csv");
+  std::filesystem::create_directory(folder() / "work/runs");
+  std::filesystem::rename(folder() / "work/a.csv", folder() / "work/runs/a.csv");
+  std::filesystem::copy_file(lambda_, folder() / "work/machine.toml");
+  Write("runs/jet.toml",
+        "measurements = 1\nlayout = \"../machine.toml\"\n"
+        "[[file]]\ncsv = \"a.csv\"\nsigma_mm = 0.005\n"
+        "[fit]\nfree = [\"open_base.x\", \"drive.L1\"]\nprior = { \"drive.L1\" = 0.1 }\n");
+  const nlohmann::json described = Json({"calibrate", "runs/jet.toml"});
+  const nlohmann::json named = Json({"calibrate",
+                                     "machine.toml",
+                                     "runs/a.csv",
+                                     "--free",
+                                     "open_base.x,drive.L1",
+                                     "--prior",
+                                     "drive.L1=0.1"});
+  EXPECT_EQ(described["free_parameters"], 2);
+  EXPECT_EQ(described["chi_squared"], named["chi_squared"]);
+  EXPECT_EQ(described["measurements"], named["measurements"]);
+  EXPECT_EQ(Json({"calibrate", "runs/jet.toml", "--free", "open_base.x"})["free_parameters"], 1);
+}
+
+TEST_F(Calibrate, AWrongDescriptionIsJudgedAtOnce) {
+  Write("jet.toml",
+        "measurements = 2\nlayut = \"m.toml\"\n"
+        "[[file]]\ncsv = 4\nheld_out = \"no\"\nsigma_mm = -1\n[fit]\nfree = \"all\"\n");
+  const Outcome outcome = Run({"calibrate", "jet.toml", "-o", "out.toml"});
+  EXPECT_EQ(outcome.code, 3);
+  for (const char* said : {"jet.toml:1:16: error: 'measurements' must be 1",
+                           "jet.toml:2:1: error: unknown key 'layut' [E0468]",
+                           "did you mean 'layout'?",
+                           "'csv' must be the name of a file",
+                           "'held_out' is true or false",
+                           "'sigma_mm' must be a number greater than 0",
+                           "'free' must be a list of patterns"}) {
+    EXPECT_THAT(outcome.err, HasSubstr(said));
+  }
+  EXPECT_THAT(Files(), ElementsAre("jet.toml"));
+}
+
+TEST_F(Calibrate, TheMapTellsHowWellTheToolIsKnownOverTheZone) {
+  Measurements("p.csv");
+  const nlohmann::json report =
+      Json({"calibrate", lambda_, "p.csv", "--map", "map.csv", "--map-steps", "4"});
+  const nlohmann::json& zone = report["zone"];
+  EXPECT_EQ(zone["points"].get<int>() + zone["out_of_reach"].get<int>(), 64);
+  EXPECT_GT(zone["points"].get<int>(), 32);
+  const double rms = zone["tool_sigma_rms_mm"].get<double>();
+  // The rows lie in the same zone: what is predicted for them is of the same size.
+  EXPECT_NEAR(rms, report["tool_sigma_rms_mm"].get<double>(), 0.6 * rms);
+  EXPECT_GE(zone["tool_sigma_max_mm"].get<double>(), rms);
+  const std::vector<std::string> lines = Lines(Read("map.csv"));
+  EXPECT_EQ(lines.size(), 1 + zone["points"].get<std::size_t>());
+  EXPECT_THAT(lines[0], HasSubstr("drive.X_mm,drive.Y_mm,Z_mm,x_mm"));
+}
+
+TEST_F(Calibrate, FixturesOfSeveralFilesStayApart) {
+  const std::string header =
+      "kind,value_mm,centre,centre_x_mm,centre_y_mm,centre_z_mm,"
+      "drive.q1_mm,drive.q2_mm,Z_mm\n";
+  // The same bar about two sockets: as one file and as two.
+  const std::string a = "ball_bar,100,A,0,0,0,-900,400,0\n";
+  const std::string b = "ball_bar,300,B,200,100,50,-905,420,0\n";
+  Write("both.csv", header + a + b);
+  Write("a.csv", header + a);
+  Write("b.csv", header + b);
+  const auto cost = [&](std::vector<std::string> files) {
+    std::vector<std::string> words{"calibrate", lambda_};
+    words.insert(words.end(), files.begin(), files.end());
+    words.insert(words.end(), {"--free", "open_base.x"});
+    words.emplace_back("--json");
+    return nlohmann::json::parse(Run(words).out)["cost_before"].get<double>();
+  };
+  const double whole = cost({"both.csv"});
+  EXPECT_GT(whole, 0.0);
+  EXPECT_NEAR(cost({"a.csv", "b.csv"}), whole, 1e-9 * whole);
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 
 #include <functional>
 #include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace kompono::cli_test {
 namespace {
@@ -15,6 +19,9 @@ class Slips : public Program {
  protected:
   Slips() {
     // Every number with a tolerance off by a part of it, full poses with an instrument's noise.
+    const std::string region =
+        "struts.X=-120:120,struts.Y=-100:140,struts.Z=800:1000,"
+        "struts.A=-10:10,struts.B=-10:10,struts.C=-10:10";
     const Outcome outcome = Run({"measure",
                                  hexapod_,
                                  "--as-made",
@@ -28,8 +35,7 @@ class Slips : public Program {
                                  "--sigma-deg",
                                  "0.0005",
                                  "--region",
-                                 "struts.X=-120:120,struts.Y=-100:140,struts.Z=800:1000,"
-                                 "struts.A=-10:10,struts.B=-10:10,struts.C=-10:10",
+                                 region,
                                  "-o",
                                  "p.csv"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;

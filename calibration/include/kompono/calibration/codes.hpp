@@ -66,6 +66,7 @@ inline constexpr CodeTitle kAtBound{"W0457", "parameter at its bound"};
 inline constexpr CodeTitle kNotConverged{"E0458", "identification that did not converge"};
 inline constexpr CodeTitle kRejected{"W0460", "row left out of the fit"};
 inline constexpr CodeTitle kTooManyOutliers{"W0461", "too many rows that stand out"};
+inline constexpr CodeTitle kBadCampaign{"E0468", "wrong description of measurements"};
 inline constexpr CodeTitle kArmsOnHeights{"W0462", "arms fitted to heights alone"};
 inline constexpr CodeTitle kHeldOutWorse{"W0459", "held-out rows that became worse"};
 }  // namespace codes

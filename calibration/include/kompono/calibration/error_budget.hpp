@@ -37,6 +37,8 @@ struct BudgetOptions {
   double mass_kg = 0.0;  ///< moved with the tool or the part; 0: no dynamic error
   /// mm/s²; else the smallest of the drives' accelerations in the layout.
   std::optional<double> acceleration;
+  /// Direction of the acceleration in the datum, and of the error that counts; else the worst one.
+  std::optional<Eigen::Vector3d> direction;
 };
 
 struct Contribution {
