@@ -118,7 +118,7 @@ class Descent {
     return true;
   }
 
-  Point At(const Eigen::VectorXd& u) const {
+  [[nodiscard]] Point At(const Eigen::VectorXd& u) const {
     Point point{.u = u};
     const NormalEquations rows =
         problem_.rows->Assemble(of_.Theta(u.data()), problem_.chosen, problem_.weights, true);
@@ -144,7 +144,7 @@ class Descent {
   }
 
   /// Damped Gauss-Newton step of the unknowns that no bound holds back.
-  Eigen::VectorXd StepFrom(const Point& here, double damping) const {
+  [[nodiscard]] Eigen::VectorXd StepFrom(const Point& here, double damping) const {
     const Eigen::Index n = here.u.size();
     std::vector<bool> held(static_cast<std::size_t>(n), false);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n);

@@ -42,8 +42,10 @@ void PaintCondition(const AnalysisResult& result,
   const double width = (picture.upper[0] - picture.lower[0]) / kMapSteps;
   const double height = (picture.upper[1] - picture.lower[1]) / kMapSteps;
   for (std::size_t k = 0; k < kMapSteps * kMapSteps; ++k) {
-    const double x = picture.lower[0] + (static_cast<double>(k % kMapSteps) + 0.5) * width;
-    const double y = picture.lower[1] + (static_cast<double>(k / kMapSteps) + 0.5) * height;
+    const std::size_t column = k % kMapSteps;
+    const std::size_t row = k / kMapSteps;
+    const double x = picture.lower[0] + (static_cast<double>(column) + 0.5) * width;
+    const double y = picture.lower[1] + (static_cast<double>(row) + 0.5) * height;
     const std::array<double, 2> at{x, y};
     if (!function.Inside(at, scratch)) continue;
     double least = 1.0;

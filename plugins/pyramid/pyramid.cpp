@@ -19,7 +19,7 @@ struct Rails {
   std::array<Vector3<T>, kLegs> start;      ///< A, where the drive reads 0
   std::array<Vector3<T>, kLegs> direction;  ///< u, unit vectors
   std::array<Vector3<T>, kLegs> joint;      ///< in the platform
-  std::array<T, kLegs> strut;
+  std::array<T, kLegs> strut{};
 };
 
 /// What both modules do once rails, joints and struts are known; `Derived::RailsOf` gives them.

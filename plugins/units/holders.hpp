@@ -27,8 +27,8 @@ class SheetDrive final : public sdk::AutodiffUnit<SheetDrive> {
   static constexpr sdk::UnitSpec kSpec{.parameters = 9, .stations = 2};
   template <class T>
   [[nodiscard]] Pose<T> Station(int station, int /*state*/, std::span<const T> parameter) const {
-    const Pose<T> X_PC = Shift<T>(parameter[kClamp], parameter[kClamp + 1], parameter[kClamp + 2]) *
-                         Tilt<T>(parameter, kTilt) * Turn<T>(RotationZ(parameter[kTurn]));
+    Pose<T> X_PC = Shift<T>(parameter[kClamp], parameter[kClamp + 1], parameter[kClamp + 2]) *
+                   Tilt<T>(parameter, kTilt) * Turn<T>(RotationZ(parameter[kTurn]));
     if (station == kCorner) return X_PC;
     return X_PC * Shift<T>(parameter[kDatum], parameter[kDatum + 1], parameter[kThickness]);
   }
@@ -47,7 +47,7 @@ class Headstock final : public sdk::AutodiffUnit<Headstock> {
   static constexpr sdk::UnitSpec kSpec{.parameters = 6, .stations = 2};
   template <class T>
   [[nodiscard]] Pose<T> Station(int station, int /*state*/, std::span<const T> parameter) const {
-    const Pose<T> X_HN = Shift<T>(T(0.0), T(0.0), parameter[kNoseLength]);
+    Pose<T> X_HN = Shift<T>(T(0.0), T(0.0), parameter[kNoseLength]);
     if (station == kNose) return X_HN;
     return X_HN * Shift<T>(parameter[kOffset], parameter[kOffset + 1], parameter[kChuck]) *
            Tilt<T>(parameter, kTilt);

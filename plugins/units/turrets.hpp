@@ -52,7 +52,7 @@ class Turret final : public sdk::AutodiffUnit<Turret> {
     const Pose<T> X_ST = Shift<T>(parameter[kArm], parameter[kArm + 1], parameter[kArm + 2]);
     const Disc<T> disc{
         parameter[kRadius], parameter[kPockets], parameter[kAngle], parameter[kIndexError]};
-    const T overhang = parameter[kOverhang + static_cast<std::size_t>(station)];
+    const T& overhang = parameter[kOverhang + static_cast<std::size_t>(station)];
     return X_BS * X_ST * PocketPose(disc, station, state, overhang, false);
   }
 
@@ -84,7 +84,7 @@ class TwinTurret final : public sdk::AutodiffUnit<TwinTurret> {
                        parameter[kAngle],
                        parameter[back ? kIndexError + 1 : kIndexError]};
     const T half = parameter[kDistance] / T(2.0);
-    const T overhang = parameter[kOverhang + static_cast<std::size_t>(station)];
+    const T& overhang = parameter[kOverhang + static_cast<std::size_t>(station)];
     return Shift<T>(T(0.0), T(0.0), back ? half : -half) *
            PocketPose(disc, station % kMaxPockets, state, overhang, back);
   }

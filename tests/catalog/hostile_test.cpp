@@ -71,7 +71,7 @@ std::vector<Hostile> HostileTexts() {
       {"open back quote", "name = `x", "E0524"},
       {"escaped quote stays open", "name = 'x''", "E0524"},
       {"open bracket", "(id = 1", "E0524"},
-      {"NUL", std::string("1\0; DROP TABLE layout", 22), "E0525"},
+      {"NUL", std::string("1\0; DROP TABLE layout", 21), "E0525"},
       {"control character", "1 \x01", "E0525"},
       {"broken UTF-8", "name = '\xff'", "E0525"},
       {"parameter", "id = ?1", "E0525"},

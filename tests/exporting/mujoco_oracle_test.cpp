@@ -87,9 +87,9 @@ class Oracle {
 
   [[nodiscard]] Pose<double> Platform() const {
     Pose<double> X;
-    X.p = Eigen::Map<const Vector3<double>>(data_->xpos + 3 * platform_);
-    X.R =
-        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data_->xmat + 9 * platform_);
+    X.p = Eigen::Map<const Vector3<double>>(data_->xpos + std::ptrdiff_t{3} * platform_);
+    X.R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+        data_->xmat + std::ptrdiff_t{9} * platform_);
     return X;
   }
 

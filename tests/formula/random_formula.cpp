@@ -52,7 +52,7 @@ class Generator {
   Group NewGroup() {
     Group group;
     std::string letters;
-    const auto size = static_cast<std::size_t>(2 + Pick(random_, 4));
+    const std::size_t size = std::size_t{2} + static_cast<std::size_t>(Pick(random_, 4));
     while (letters.size() < size) {
       const char letter = Letter();
       if (letters.find(letter) != std::string::npos) continue;

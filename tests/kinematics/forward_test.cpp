@@ -36,9 +36,10 @@ class Sized {
     const plugin::MechanismShape shape = view_.code->Shape();
     const kinematics::VectorXd theta = machine_.nominal();
     for (int i = 0; i < shape.parameters; ++i) {
+      const int number = view_.first_parameter + i;
       const kinematics::Parameter& parameter =
-          machine_.parameters()[static_cast<std::size_t>(view_.first_parameter + i)];
-      theta_.push_back(theta[view_.first_parameter + i] * (parameter.angle ? 1.0 : size));
+          machine_.parameters()[static_cast<std::size_t>(number)];
+      theta_.push_back(theta[number] * (parameter.angle ? 1.0 : size));
     }
     for (std::size_t i = 0; i < box_.lower.size(); ++i) {
       const double by = IsRotaryLetter(view_.description->letters[i]) ? kDegree : size;

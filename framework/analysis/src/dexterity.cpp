@@ -66,7 +66,7 @@ DexterityDetails DexterityAt(const PoseJudge& judge,
       R.transpose().triangularView<Eigen::Lower>().solve(by_x.transpose()).transpose();
   if (!J.allFinite()) return out;
   const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd s = svd.singularValues();
+  const VectorXd& s = svd.singularValues();
   const double least = s[s.size() - 1];
   out.dexterity = {
       .condition = least > 0.0 ? s[0] / least : std::numeric_limits<double>::infinity(),

@@ -225,7 +225,7 @@ struct DexterityBlock::Impl {
 
   template <std::size_t N>
   void Decompose(std::size_t first, std::size_t count) {
-    Table<N> table;
+    Table<N> table;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
     for (std::size_t i = 0; i < count; i += lanes::kCount) {
       for (std::size_t k = 0; k < N; ++k) {
         for (std::size_t row = 0; row < drives; ++row)

@@ -34,7 +34,7 @@ class Voxels {
       // Many more voxels than along the longest side would be of no use.
       count_[i] = std::min(count_[i], 4 * kVoxels);
     }
-    full_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]), 0);
+    full_.assign(Index(0, 0, count_[2]), 0);
     Fill(zone);
   }
 
@@ -75,7 +75,9 @@ class Voxels {
 
  private:
   [[nodiscard]] std::size_t Index(int x, int y, int z) const {
-    return static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x);
+    const int row = z * count_[1] + y;
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(count_[0]) +
+           static_cast<std::size_t>(x);
   }
 
   /// A voxel is full if its middle lies in a cell that is mostly inside.

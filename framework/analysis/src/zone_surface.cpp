@@ -276,6 +276,7 @@ Outline OutlineOfZone(const ZoneFunction& function,
   const std::vector<Point> positions = vertices.Positions(grid, control);
   for (const std::vector<std::uint32_t>& loop : Loops(segments)) {
     std::vector<std::array<double, 2>> line;
+    line.reserve(loop.size());
     for (const std::uint32_t vertex : loop)
       line.push_back({positions[vertex][0], positions[vertex][1]});
     out.push_back(std::move(line));

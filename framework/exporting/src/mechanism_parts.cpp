@@ -60,8 +60,9 @@ class Study {
     RowMajor by_q(3 * shape_.points, shape_.drives);
     Derivatives(by_x, by_q);
     for (int i = 0; i < shape_.points; ++i) {
-      const bool of_x = by_x.middleRows(3 * i, 3).cwiseAbs().maxCoeff() > kStill * size_;
-      out.points.push_back(Carried(i, of_x, by_q.middleRows(3 * i, 3)));
+      const Eigen::Index row = Eigen::Index{3} * i;
+      const bool of_x = by_x.middleRows(row, 3).cwiseAbs().maxCoeff() > kStill * size_;
+      out.points.push_back(Carried(i, of_x, by_q.middleRows(row, 3)));
     }
     for (int i = 0; i < shape_.points; ++i) {
       const bool ring =
@@ -103,7 +104,8 @@ class Study {
             plugin::Status::kOk &&
         out.q.allFinite() && points.allFinite();
     out.X_BP = Pose<double>::Read(std::span<const double>(platform.data(), 12));
-    for (int i = 0; i < shape_.points; ++i) out.points.emplace_back(points.segment<3>(3 * i));
+    for (Eigen::Index i = 0; i < shape_.points; ++i)
+      out.points.emplace_back(points.segment<3>(3 * i));
     return out;
   }
 

@@ -235,6 +235,7 @@ class SceneBuilder {
 
   void AddPlate(const std::string& kind, const std::set<std::string>& names, int layer) {
     std::vector<Eigen::Vector3d> corners;
+    corners.reserve(names.size());
     for (const std::string& name : names) corners.push_back(points_.at(name));
     if (corners.size() > 2) Add(Form::kBody, kind, std::move(corners), layer);
   }

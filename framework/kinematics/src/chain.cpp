@@ -201,11 +201,12 @@ Pose<double> ChainPose(const Machine::Impl& impl,
   for (const Factor& factor : impl.factors) {
     FactorPose next = PoseOfFactor(impl, factor, z, theta, wanted);
     if (factor.inverse) next = Invert(std::move(next));
-    if (!wanted) next.twists.clear();
-    for (const TwistEntry& entry : next.twists) {
-      auto& table =
-          entry.of == Of::kCoordinate ? derivatives->by_coordinates : derivatives->by_parameters;
-      table.col(entry.index) += Transport(X_WK, entry.twist);
+    if (wanted) {
+      for (const TwistEntry& entry : next.twists) {
+        auto& table =
+            entry.of == Of::kCoordinate ? derivatives->by_coordinates : derivatives->by_parameters;
+        table.col(entry.index) += Transport(X_WK, entry.twist);
+      }
     }
     X_WK = X_WK * next.X;
   }

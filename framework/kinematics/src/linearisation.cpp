@@ -101,10 +101,13 @@ struct Linearisation::Workspace {
     block->q_by_x.resize(shape.drives, shape.coordinates);
     block->q_by_theta.resize(shape.drives, shape.parameters);
     for (int i = 0; i < shape.parameters; ++i) {
-      const int at = column[static_cast<std::size_t>(model.theta_module + i)];
+      const int at = ColumnOf(model.theta_module + i);
       if (at != kNone) block->module_columns.emplace_back(i, at);
     }
   }
+
+  /// Column of a number of θ, or kNone.
+  [[nodiscard]] int ColumnOf(int number) const { return column[static_cast<std::size_t>(number)]; }
 
   [[nodiscard]] std::span<const double> Own(const MechanismModel& model, Eigen::Index count) const {
     return {theta.data() + model.theta_module, static_cast<std::size_t>(count)};
@@ -116,7 +119,7 @@ struct Linearisation::Workspace {
     frame->X = PlacementPose(theta, first);
     const std::array<Vector3<double>, 3> axes{Vector3<double>::UnitX(), Ra.col(1), Rab.col(2)};
     for (int i = 0; i < 6; ++i) {
-      const int at = column[static_cast<std::size_t>(first + i)];
+      const int at = ColumnOf(first + i);
       if (at == kNone) continue;
       Vector6 twist = Vector6::Zero();
       if (i < 3) {
@@ -144,7 +147,7 @@ struct Linearisation::Workspace {
     if (status != plugin::Status::kOk) numbers.fill(std::nan(""));
     const Pose<double> station = Pose<double>::Read(numbers);
     for (int i = 0; i < end.parameter_count; ++i) {
-      const int at = column[static_cast<std::size_t>(end.theta_module + i)];
+      const int at = ColumnOf(end.theta_module + i);
       if (at == kNone) continue;
       const Vector6 twist = SpatialTwist(station, PoseOfColumn(table, i));
       frame->entries.push_back({false, at, Transport(frame->X, twist)});
@@ -314,7 +317,7 @@ struct Linearisation::Workspace {
       readings[axis.drive] = sign * (z[axis.coordinate] - theta[axis.theta_zero]);
       if (depth == Depth::kValues) continue;
       q_by_z(axis.drive, axis.coordinate) = sign;
-      const int at = column[static_cast<std::size_t>(axis.theta_zero)];
+      const int at = ColumnOf(axis.theta_zero);
       if (depth == Depth::kByParameters && at != kNone) q_by_theta(axis.drive, at) = -sign;
     }
   }
@@ -354,7 +357,7 @@ struct Linearisation::Workspace {
       for (const auto& [own, at] : block.module_columns) {
         q_by_theta(row, at) = sign * block.q_by_theta(k, own);
       }
-      const int zero = column[static_cast<std::size_t>(model.theta_zero + static_cast<int>(i))];
+      const int zero = ColumnOf(model.theta_zero + static_cast<int>(i));
       if (zero != kNone) q_by_theta(row, zero) = -sign;
     }
     return true;

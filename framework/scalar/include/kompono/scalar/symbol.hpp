@@ -256,7 +256,7 @@ class Recording {
     if (Active() == nullptr) {
       throw std::logic_error("Symbol: no recording is active on this thread");
     }
-    return *Active();
+    return *Active();  // NOLINT(clang-analyzer-cplusplus.NewDelete): a recording unlinks itself
   }
 
   void Unlink() {

@@ -203,7 +203,7 @@ class AutodiffMechanism : public plugin::Mechanism {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = point[i / 3][static_cast<int>(i % 3)];
         return plugin::Status::kOk;
       }
-      case plugin::Quantity::kCoordinates:
+      case plugin::Quantity::kCoordinates:  // NOLINT(bugprone-branch-clone): with neither hook
         if constexpr (requires { derived().Coordinates(in, out); }) {
           derived().Coordinates(in, out);
           return plugin::Status::kOk;
