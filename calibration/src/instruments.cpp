@@ -58,8 +58,11 @@ struct Plane {
   Eigen::Matrix<double, 3, 2> by_tilt;
   double offset_mm = 0.0;
 };
-Plane PlaneOf(const Fixture& fixture, const double* value) {
-  const PlaneFrame frame = FrameOf(fixture.normal);
+/// The plane that a height was measured from.
+Plane PlaneOf(const Measurement& measurement, const FixtureValues& fixtures) {
+  const double* value = OfThree(fixtures.value, measurement.fixture);
+  const PlaneFrame frame =
+      FrameOf((*fixtures.fixtures)[static_cast<std::size_t>(measurement.fixture)].normal);
   const Eigen::Vector3d leaning = frame.n + value[0] * frame.e1 + value[1] * frame.e2;
   const double length = leaning.norm();
   Plane plane;
@@ -196,8 +199,7 @@ RowErrors ErrorsOf(const Measurement& measurement,
           (point.p_WQ - Eigen::Map<const Eigen::Vector3d>(fixture)).norm() - measurement.value_mm;
       break;
     case MeasurementKind::kPlane: {
-      const Plane plane =
-          PlaneOf((*fixtures.fixtures)[static_cast<std::size_t>(measurement.fixture)], fixture);
+      const Plane plane = PlaneOf(measurement, fixtures);
       errors.value[0] = plane.n.dot(point.p_WQ) - plane.offset_mm - measurement.value_mm;
       break;
     }
@@ -249,8 +251,7 @@ RowMaps MapsOf(const Measurement& measurement,
       break;
     }
     case MeasurementKind::kPlane: {
-      const Plane plane =
-          PlaneOf((*fixtures.fixtures)[static_cast<std::size_t>(measurement.fixture)], fixture);
+      const Plane plane = PlaneOf(measurement, fixtures);
       MapsAlong(plane.n, point, &maps);
       maps.fixture.leftCols<2>() = point.p_WQ.transpose() * plane.by_tilt;
       maps.fixture(0, 2) = -1.0;
