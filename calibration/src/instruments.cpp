@@ -60,7 +60,7 @@ struct Plane {
 };
 /// The plane that a height was measured from.
 Plane PlaneOf(const Measurement& measurement, const FixtureValues& fixtures) {
-  const double* value = OfThree(fixtures.value, measurement.fixture);
+  const double* value = fixtures.value + ValueIndex(measurement.fixture);
   const PlaneFrame frame =
       FrameOf((*fixtures.fixtures)[static_cast<std::size_t>(measurement.fixture)].normal);
   const Eigen::Vector3d leaning = frame.n + value[0] * frame.e1 + value[1] * frame.e2;
