@@ -114,6 +114,10 @@ class CatalogTest : public testing::Test {
         (std::filesystem::temp_directory_path() / "kompono-catalog-XXXXXX").string();
     folder_ = ::mkdtemp(pattern.data());
   }
+  CatalogTest(const CatalogTest&) = delete;
+  CatalogTest& operator=(const CatalogTest&) = delete;
+  CatalogTest(CatalogTest&&) = delete;
+  CatalogTest& operator=(CatalogTest&&) = delete;
   ~CatalogTest() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::filesystem::path File(const std::string& name = "machines.db") const {

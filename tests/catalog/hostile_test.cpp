@@ -21,6 +21,10 @@ std::string Repeated(const std::string& text, int times) {
 class HostileTest : public CatalogTest {
  protected:
   HostileTest() : store_(Filled()), before_(State()) {}
+  HostileTest(const HostileTest&) = delete;
+  HostileTest& operator=(const HostileTest&) = delete;
+  HostileTest(HostileTest&&) = delete;
+  HostileTest& operator=(HostileTest&&) = delete;
   ~HostileTest() override {
     EXPECT_TRUE(State() == before_) << "the catalog was changed";
     EXPECT_FALSE(std::filesystem::exists("/tmp/kompono-hostile"));

@@ -89,7 +89,7 @@ TEST_F(SearchTest, RefusesTextsWithoutWordsOrWithTooMany) {
 }
 
 TEST(Structure, EqualFeaturesAreOneAndNoneZero) {
-  const auto features = [](const char* text, std::vector<std::string> modules = {}) {
+  const auto features = [](const char* text, const std::vector<std::string>& modules = {}) {
     return StructureFeatures(*formula::ParseFormula(text), modules);
   };
   const auto mill = features("part X Y Z O C_v tool");
