@@ -149,7 +149,7 @@ TEST_F(KillTest, TwoHundredKillsLoseNothing) {
               killed,
               completed,
               committed_chunks);
-  EXPECT_GE(completed, 5);
+  EXPECT_GE(completed, 2) << "kills came too early to be of use";
 }
 
 TEST_F(KillTest, ALostEvaluationWouldBeNoticed) {
