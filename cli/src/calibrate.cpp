@@ -17,6 +17,7 @@
 #include "kompono/calibration/cross_validation.hpp"
 #include "kompono/calibration/html_report.hpp"
 #include "kompono/calibration/identification.hpp"
+#include "kompono/calibration/iso_figures.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 #include "kompono/calibration/report.hpp"
 #include "kompono/calibration/zone_accuracy.hpp"
@@ -217,6 +218,26 @@ ordered_json FoldsJson(const std::vector<calibration::FoldedError>& folded) {
   return out;
 }
 
+ordered_json IsoJson(const calibration::IsoFigures& figures) {
+  ordered_json out{{"iso_9283", ordered_json::array()}, {"iso_230_4", ordered_json::array()}};
+  for (const calibration::RepeatedPose& p : figures.poses) {
+    out["iso_9283"].push_back({{"first_row", p.first_row},
+                               {"repeats", p.repeats},
+                               {"ap_before_mm", p.accuracy_before_mm},
+                               {"ap_after_mm", p.accuracy_after_mm},
+                               {"rp_mm", p.repeatability_mm}});
+  }
+  for (const calibration::CircularRun& r : figures.runs) {
+    out["iso_230_4"].push_back({{"centre", r.centre},
+                                {"rows", r.rows},
+                                {"g_before_mm", r.deviation_before_mm},
+                                {"g_after_mm", r.deviation_after_mm},
+                                {"fmax_before_mm", r.radial_most_before_mm},
+                                {"fmin_before_mm", r.radial_least_before_mm}});
+  }
+  return out;
+}
+
 /// The files asked for; with what to leave if one cannot be written.
 std::optional<ExitCode> WriteFiles(Session& session,
                                    const Machine& machine,
@@ -300,11 +321,17 @@ ExitCode Identify(Session& session,
     comparison = *compared;
     document["klipper"] = ComparisonJson(*comparison);
   }
+  calibration::IsoFigures iso;
+  if (report.ok()) {
+    iso = calibration::IsoFiguresOf(machine, files.set, report.theta_after);
+    if (!iso.empty()) document["iso"] = IsoJson(iso);
+  }
   if (!session.json) {
     session.console.Out(calibration::RenderText(report, {.residuals = options.residuals}));
     if (options.folds > 1 && report.ok()) {
       session.console.Out(FoldsText(folded, options.folds));
     }
+    if (!iso.empty()) session.console.Out(calibration::RenderIso(iso));
     if (comparison) session.console.Out(ComparisonText(*comparison));
     session.console.Report(report.diagnostics);  // under --json they stand in the document
   }
