@@ -120,7 +120,7 @@ ExitCode RunList(Session& session, const OpenedStudy& opened, const Options& opt
       std::vector<std::string> words;
       words.reserve(choices.size());
       for (const auto& [feature, alternative] : choices)
-        words.push_back(feature + "=" + alternative);
+        words.push_back(fmt::format("{}={}", feature, alternative));
       text += fmt::format("{:>10}  {}{}{}\n",
                           CountText(index),
                           formula,

@@ -16,6 +16,7 @@ namespace {
 template <class List>
 std::vector<std::string> NamesOf(const List& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& one : list) names.push_back(one.name);
   return names;
 }
@@ -172,6 +173,7 @@ std::optional<Fixing> StudySpace::FixChains(const formula::Chain& left,
     fixing.push_back({first_place_ + place, static_cast<int>(found - places_.begin())});
   }
   std::vector<int> items;
+  items.reserve(placed.size());
   for (const auto& item : placed) items.push_back(item.item);
   std::sort(items.begin(), items.end());
   bool known = false;
@@ -234,12 +236,13 @@ std::vector<double> ParametersOf(const StudySpace& space,
     const StudyParameter& parameter = module.parameters[i];
     if (parameter.coordinate >= 0) continue;
     for (int k = 0; k < parameter.count; ++k) {
-      numbers[static_cast<std::size_t>(parameter.offset + k)] = ValueOf(parameter,
-                                                                        block.levels[i],
-                                                                        static_cast<std::size_t>(k),
-                                                                        block.module,
-                                                                        static_cast<int>(i),
-                                                                        sizes);
+      numbers[static_cast<std::size_t>(parameter.offset) + static_cast<std::size_t>(k)] =
+          ValueOf(parameter,
+                  block.levels[i],
+                  static_cast<std::size_t>(k),
+                  block.module,
+                  static_cast<int>(i),
+                  sizes);
     }
   }
   return numbers;

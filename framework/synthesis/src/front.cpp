@@ -175,7 +175,9 @@ std::vector<FrontPoint> Front::Thinned(std::span<const double> epsilon) const {
     double sum = 0.0;
     std::uint64_t id = 0;
     std::size_t row = 0;
-    auto operator<=>(const Best&) const = default;
+    bool operator<(const Best& other) const {
+      return std::tie(sum, id, row) < std::tie(other.sum, other.id, other.row);
+    }
   };
   std::map<std::vector<double>, Best> boxes;
   for (std::size_t row = 0; row < ids_.size(); ++row) {

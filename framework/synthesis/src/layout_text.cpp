@@ -34,8 +34,7 @@ std::string Quoted(std::string_view text) {
 /// A number that reads back the same; angles lose the dust of their conversion.
 std::string Number(double value, bool angle) {
   if (!angle) return fmt::format("{}", value + 0.0);
-  const std::string degrees = fmt::format("{:.15g}", value * kDegPerRad + 0.0);
-  return degrees;
+  return fmt::format("{:.15g}", value * kDegPerRad + 0.0);
 }
 
 class LayoutWriter {

@@ -40,7 +40,7 @@ std::string CountText(Count count) {
 }
 
 std::string GroupedText(Count count) {
-  const std::string digits = CountText(count);
+  std::string digits = CountText(count);
   if (count == kTooMany) return digits;
   std::string text;
   for (std::size_t i = 0; i < digits.size(); ++i) {

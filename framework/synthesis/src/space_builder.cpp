@@ -339,16 +339,17 @@ void StudySpaceBuilder::AddPlaces() {
     for (const bool part : {true, false}) {
       if (part ? !sides.part : !sides.tool) continue;
       const std::string side = part ? "part" : "tool";
-      Alternative alternative{.name = item.text + "." + side, .tags = {"side:" + side}};
+      Alternative alternative{.name = fmt::format("{}.{}", item.text, side),
+                              .tags = {"side:" + side}};
       for (const int motion : item.motions) {
         const std::string& name = study().motions[static_cast<std::size_t>(motion)].name;
-        alternative.tags.push_back(side + ":" + name);
+        alternative.tags.push_back(fmt::format("{}:{}", side, name));
         alternative.tags.push_back("motion:" + name);
       }
       alternative.tags.push_back(side + (item.translates ? ":translation" : ":rotation"));
       if (item.module >= 0) {
         const std::string& block = study().modules[static_cast<std::size_t>(item.module)].name;
-        alternative.tags.push_back(side + ":" + block);
+        alternative.tags.push_back(fmt::format("{}:{}", side, block));
       }
       alternatives.push_back(std::move(alternative));
       made_.places_.push_back({.kind = StudySpace::PlaceMeaning::Kind::kItem,

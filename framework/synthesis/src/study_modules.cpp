@@ -28,6 +28,7 @@ bool IsWord(std::string_view name) {
 template <class List>
 std::vector<std::string> NamesOf(const List& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& item : list) names.push_back(item.name);
   return names;
 }

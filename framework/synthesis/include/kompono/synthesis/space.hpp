@@ -71,7 +71,10 @@ struct Feature {
 struct Choice {
   int feature = 0;
   int alternative = 0;
-  auto operator<=>(const Choice&) const = default;
+  bool operator==(const Choice&) const = default;
+  bool operator<(const Choice& other) const {
+    return feature != other.feature ? feature < other.feature : alternative < other.alternative;
+  }
 };
 
 /// One alternative's number for each feature.
@@ -99,7 +102,7 @@ class Space {
   struct Conflict {
     Choice first, second;
     int rule = 0;
-    auto operator<=>(const Conflict&) const = default;
+    bool operator==(const Conflict&) const = default;
   };
   /// As they were added; the same may stand there twice.
   [[nodiscard]] const std::vector<Conflict>& conflicts() const { return conflicts_; }
