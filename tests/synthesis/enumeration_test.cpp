@@ -179,14 +179,14 @@ TEST(Counts128, StayAtTooMany) {
 std::string Program(const Space& space) {
   std::string text;
   for (std::size_t f = 0; f < space.features().size(); ++f) {
-    text += "1 { x(" + std::to_string(f) + ",0.." +
-            std::to_string(space.features()[f].alternatives.size() - 1) + ") } 1.\n";
+    text += fmt::format("1 {{ x({},0..{}) }} 1.\n", f, space.features()[f].alternatives.size() - 1);
   }
   for (const Space::Conflict& conflict : space.conflicts()) {
-    const auto atom = [](const Choice& choice) {
-      return "x(" + std::to_string(choice.feature) + "," + std::to_string(choice.alternative) + ")";
-    };
-    text += ":- " + atom(conflict.first) + ", " + atom(conflict.second) + ".\n";
+    text += fmt::format(":- x({},{}), x({},{}).\n",
+                        conflict.first.feature,
+                        conflict.first.alternative,
+                        conflict.second.feature,
+                        conflict.second.alternative);
   }
   return text + "#show.\n";
 }

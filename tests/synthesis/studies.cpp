@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cctype>
 #include <filesystem>
@@ -35,14 +37,14 @@ Outcome BuildStudy(const std::string& text, const std::string& file) {
 }
 
 std::string PlainStudy(const std::string& letters, const std::string& equivalence) {
-  std::string text =
-      "kompono = 1\nstudy = \"plain axes\"\nequivalence = \"" + equivalence + "\"\n[motions]\n";
+  std::string text = fmt::format(
+      "kompono = 1\nstudy = \"plain axes\"\nequivalence = \"{}\"\n[motions]\n", equivalence);
   for (std::size_t i = 0; i < letters.size();) {
     std::size_t end = i + 1;
     while (end < letters.size() && std::isdigit(static_cast<unsigned char>(letters[end])) != 0) {
       ++end;
     }
-    text += letters.substr(i, end - i) + " = { range = [-100, 100] }\n";
+    text += fmt::format("{} = {{ range = [-100, 100] }}\n", letters.substr(i, end - i));
     i = end;
   }
   return text;
@@ -52,7 +54,7 @@ Space RandomSpace(int features, int alternatives, double density, int window, un
   Space space;
   const int rule = space.Add(RuleTitle{.name = "random"});
   for (int f = 0; f < features; ++f) {
-    Feature feature{.name = "f" + std::to_string(f)};
+    Feature feature{.name = fmt::format("f{}", f)};
     for (int a = 0; a < alternatives; ++a) {
       feature.alternatives.push_back({.name = std::to_string(a)});
     }

@@ -4,7 +4,6 @@
 
 #include "complaints.hpp"
 #include "formula_place.hpp"
-#include "kompono/layout/letters.hpp"
 #include "units.hpp"
 
 #include <functional>
@@ -17,6 +16,7 @@
 #include <toml++/toml.h>
 
 #include "kompono/layout/layout.hpp"
+#include "kompono/layout/letters.hpp"
 #include "kompono/layout/numbers.hpp"
 
 namespace kompono::layout {
