@@ -9,6 +9,8 @@ find_package(Boost 1.74 REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(SQLiteCpp REQUIRED)
+find_package(NLopt 2.7 REQUIRED)
+find_package(TBB 2021 REQUIRED)
 
 find_program(KOMPONO_CCACHE ccache)
 if(KOMPONO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

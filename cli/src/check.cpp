@@ -16,6 +16,7 @@
 #include "kompono/calibration/measurements.hpp"
 #include "kompono/plugin/description.hpp"
 #include "kompono/synthesis/candidate.hpp"
+#include "kompono/synthesis/evaluation.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -110,8 +111,8 @@ void JudgeLayout(Session& session, std::string_view text, bool run_code, Verdict
 
 /// The text, then whether its space has layouts and each alternative makes good ones.
 void JudgeStudy(Session& session, std::string_view text, Verdict& verdict) {
-  Parsed<synthesis::Study> study =
-      synthesis::ParseStudy(text, verdict.file, session.registry(), {}, &verdict.diagnostics);
+  Parsed<synthesis::Study> study = synthesis::ParseStudy(
+      text, verdict.file, session.registry(), synthesis::MetricNames(), &verdict.diagnostics);
   Take(study, verdict.diagnostics);
   if (study) {
     Take(synthesis::StudySpace::Build(std::move(*study), session.registry(), &verdict.diagnostics),

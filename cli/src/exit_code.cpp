@@ -12,7 +12,7 @@ struct Rule {
 };
 
 /// The longest prefix counts.
-constexpr std::array<Rule, 31> kRules{{
+constexpr std::array<Rule, 32> kRules{{
     {"E", ExitCode::kBadInput},
     {"E0333", ExitCode::kInputOutput},  // layout that cannot be read
     {"E0401", ExitCode::kInputOutput},  // measurements that cannot be read
@@ -44,6 +44,7 @@ constexpr std::array<Rule, 31> kRules{{
     {"E0722", ExitCode::kBadInput},     // module that records no formulas
     {"E0829", ExitCode::kUsage},        // feature or alternative that the study does not have
     {"E0830", ExitCode::kInputOutput},  // study that cannot be read
+    {"E0845", ExitCode::kUsage},        // no shard
 }};
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "codes.hpp"
 #include "files.hpp"
+#include "synthesize_run.hpp"
 #include "text.hpp"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,9 @@ using synthesis::Space;
 using synthesis::StudySpace;
 
 constexpr const char* kExamples =
+    "  kompono synthesize study.toml                        evaluate all, show the front\n"
+    "  kompono synthesize study.toml --catalog study.db     keep every row; again: what is "
+    "missing\n"
     "  kompono synthesize study.toml --count                how many layouts, without making them\n"
     "  kompono synthesize study.toml --explain              what each rule costs\n"
     "  kompono synthesize study.toml --list 20 --fix base=open\n"
@@ -38,6 +42,7 @@ struct Options {
   std::uint64_t list = 0;
   std::string from = "0";
   std::string layout;
+  SynthesizeRunOptions run;
 };
 
 std::string ScientificText(double log10) {
@@ -151,7 +156,10 @@ ExitCode RunLayout(Session& session, const OpenedStudy& opened, const Options& o
                                                GroupedText(all.count()))});
   }
   const auto candidate = opened.space.At(all.Unrank(*index), static_cast<std::uint64_t>(*index));
-  const std::string text = LayoutText(opened.space, candidate);
+  const auto settings = synthesis::ReadEvaluationSettings(opened.space.study().text,
+                                                          opened.space.study().file.string());
+  if (!settings) return session.Refuse(settings.error());
+  const std::string text = synthesis::Evaluator(opened.space, *settings).LayoutFile(candidate);
   if (session.json) {
     session.console.Json({{"index", CountText(*index)}, {"layout", text}});
   } else {
@@ -243,7 +251,8 @@ ExitCode Run(Session& session, const Options& options) {
   if (options.explain) return RunExplain(session, *opened);
   if (options.list > 0) return RunList(session, *opened, options);
   if (!options.layout.empty()) return RunLayout(session, *opened, options);
-  return RunCount(session, *opened);
+  if (options.count) return RunCount(session, *opened);
+  return RunSynthesis(session, opened->space, opened->fixed, options.run);
 }
 
 Diagnostics Narrow(const StudyChoice& choice, OpenedStudy& opened) {
@@ -313,8 +322,8 @@ std::optional<OpenedStudy> OpenStudy(Session& session, const StudyChoice& choice
     return std::nullopt;
   }
   Diagnostics notes;
-  Parsed<synthesis::Study> study =
-      synthesis::ParseStudy(*text, choice.file, session.registry(), {}, &notes);
+  Parsed<synthesis::Study> study = synthesis::ParseStudy(
+      *text, choice.file, session.registry(), synthesis::MetricNames(), &notes);
   if (!study) {
     code = session.Refuse(study.error());
     return std::nullopt;
@@ -335,8 +344,11 @@ std::optional<OpenedStudy> OpenStudy(Session& session, const StudyChoice& choice
 }
 
 void AddSynthesize(CLI::App& root, Session& session) {
-  CLI::App* command = session.Command(
-      root, "synthesize", "The layouts of a study: count, list, explain", kExamples);
+  CLI::App* command =
+      session.Command(root,
+                      "synthesize",
+                      "The layouts of a study: evaluate, rank, keep; count, list, explain",
+                      kExamples);
   const auto options = std::make_shared<Options>();
   AddStudyChoice(*command, session, options->study);
   auto* const count = command->add_flag("--count", options->count, "How many; nothing is made");
@@ -348,13 +360,14 @@ void AddSynthesize(CLI::App& root, Session& session) {
       ->type_name("INDEX")
       ->needs(list);
   auto* const layout =
-      command->add_option("--layout", options->layout, "Print the layout file of this one")
+      command->add_option("--layout", options->layout, "Print the sized layout file of this one")
           ->type_name("INDEX");
   for (auto* const one : {count, explain, list, layout}) {
     for (auto* const other : {count, explain, list, layout}) {
       if (one != other) one->excludes(other);
     }
   }
+  AddRunOptions(*command, session, options->run);
   session.OnRun(command, [&session, options] { return Run(session, *options); });
 }
 
