@@ -201,8 +201,7 @@ TEST(Budget, OfThreePerpendicularAxesIsTheWeakestDriveAndTheSumOfVariances) {
   EXPECT_DOUBLE_EQ(masses.of.at("Y"), 250.0);
   EXPECT_DOUBLE_EQ(masses.of.at("X"), 350.0);
   EXPECT_DOUBLE_EQ(masses.sum, 750.0) << "the part stands still";
-  const ToolBudget budget =
-      BudgetOf(machine, PoseGrid::Of(zone.region, 3, 729), masses, 'z', settings);
+  const ToolBudget budget = BudgetOf(machine, zone.poses, masses, 'z', settings);
   EXPECT_NEAR(budget.stiffness_n_per_mm, 20e3, 1e-6);
   // Forces 150, 250 and 350 N on 100, 40 and 20 N/µm.
   EXPECT_NEAR(budget.dynamic_mm, 150.0 / 100e3 + 250.0 / 40e3 + 350.0 / 20e3, 1e-9);
@@ -220,9 +219,7 @@ TEST(Budget, OfAMechanismIsWhatItsForwardKinematicsSays) {
   settings.guide_angle_rad = settings.squareness_rad = settings.guide_straightness_mm = 0.0;
   settings.drive_tolerance_mm = 0.01;
   const MovedMasses masses = MassesOf(machine, 500.0, settings);
-  const PoseGrid grid = PoseGrid::Of(zone.region, 3, 729);
-  ASSERT_EQ(grid.size(), 1U);
-  const ToolBudget budget = BudgetOf(machine, grid, masses, 'z', settings);
+  const ToolBudget budget = BudgetOf(machine, {zone.region.z}, masses, 'z', settings);
   // Each drive and each number of the geometry moved a little, the tool's way by forward solution.
   const VectorXd z = zone.region.z;
   const VectorXd theta = machine.nominal();
@@ -275,8 +272,7 @@ TEST(Budget, FindsTheSingularTableAtLevelAndNotTheTiltedOne) {
                                                 MotionOf('Z', 0, 0),
                                                 MotionOf('A', from, to),
                                                 MotionOf('C', 0, 0)});
-    return BudgetOf(machine, PoseGrid::Of(zone.region, 3, 729), masses, 'z', settings)
-        .orientation_margin;
+    return BudgetOf(machine, zone.poses, masses, 'z', settings).orientation_margin;
   };
   EXPECT_NEAR(margin(-0.5, 0.5), 0.0, 1e-9) << "C about the tool's own axis";
   // Directions by A and C are perpendicular, by C shortened to the sine of the tilt.
@@ -292,7 +288,7 @@ TEST(SpaceBox, OfAMovingTableIsLongerByItsTravel) {
         Built(std::string("kompono = 1\nname = \"t\"\nformula = \"") + formula + "\"\n");
     const RequiredZone zone = FindRequiredZone(machine, study.motions);
     EXPECT_TRUE(zone.found);
-    return BoxOf(machine, PoseGrid::Of(zone.region, 2, 64), study);
+    return BoxOf(machine, zone.poses, study);
   };
   EXPECT_NEAR(box("part O X Y tool").FloorMm2(), 400.0 * 200.0, 1e-6);
   EXPECT_NEAR(box("part X Y O tool").FloorMm2(), 800.0 * 400.0, 1e-6);

@@ -56,7 +56,7 @@ TEST(EvaluationSettings, AreConvertedToMillimetresRadiansAndNewtons) {
 
 TEST(EvaluationSettings, AreRefusedAltogetherWithPlaceAndWayOut) {
   const auto settings = ReadEvaluationSettings(
-      "[evaluation]\nposses = 1000\nbudget_steps = 2.5\nzone_share = 2\ntool_mass = \"heavy\"\n",
+      "[evaluation]\nposses = 1000\nsizing_steps = 2.5\nzone_share = 2\ntool_mass = \"heavy\"\n",
       "x.toml");
   ASSERT_FALSE(settings);
   EXPECT_EQ(RenderAll(settings.error(), {}),
@@ -64,11 +64,10 @@ TEST(EvaluationSettings, AreRefusedAltogetherWithPlaceAndWayOut) {
             " 2 | posses = 1000\n"
             "   | ^~~~~~\n"
             "  help: did you mean 'poses'?\n"
-            "x.toml:3:16: error: 'budget_steps' is no whole number [E0841]\n"
-            " 3 | budget_steps = 2.5\n"
+            "x.toml:3:16: error: 'sizing_steps' is no whole number [E0841]\n"
+            " 3 | sizing_steps = 2.5\n"
             "   |                ^~~\n"
-            "  help: give a whole number from 2 to 9: poses per coordinate for stiffness and "
-            "errors\n"
+            "  help: give a whole number from 2 to 21: poses per coordinate while sizing\n"
             "x.toml:4:14: error: 'zone_share' is out of range [E0841]\n"
             " 4 | zone_share = 2\n"
             "   |              ^\n"

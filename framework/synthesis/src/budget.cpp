@@ -317,7 +317,7 @@ MovedMasses MassesOf(const Machine& machine, double part_kg, const EvaluationSet
 }
 
 ToolBudget BudgetOf(const Machine& machine,
-                    const PoseGrid& grid,
+                    const std::vector<VectorXd>& poses,
                     const MovedMasses& masses,
                     char process_direction,
                     const EvaluationSettings& settings) {
@@ -326,8 +326,7 @@ ToolBudget BudgetOf(const Machine& machine,
   const VectorXd theta = machine.nominal();
   at.SetGeometry(theta);
   ToolBudget out;
-  for (std::uint64_t i = 0; i < grid.size(); ++i) {
-    const VectorXd z = grid.At(i);
+  for (const VectorXd& z : poses) {
     if (!at.At(z, kinematics::Linearisation::Depth::kByParameters)) continue;
     TakePose(model, at, z, out);
     for (const kinematics::Singularity& singularity : machine.Singularities(z, theta))
@@ -354,7 +353,7 @@ double SpaceBox::Content(std::size_t n) const {
   return content;
 }
 
-SpaceBox BoxOf(const Machine& machine, const PoseGrid& corners, const Study& study) {
+SpaceBox BoxOf(const Machine& machine, const std::vector<VectorXd>& poses, const Study& study) {
   SpaceBox out;
   out.lower = Vector3d::Constant(std::numeric_limits<double>::infinity());
   out.upper = -out.lower;
@@ -370,8 +369,7 @@ SpaceBox BoxOf(const Machine& machine, const PoseGrid& corners, const Study& stu
       middle[static_cast<Eigen::Index>(row)] = motion.range.middle();
   }
   const VectorXd theta = machine.nominal();
-  for (std::uint64_t i = 0; i < corners.size(); ++i) {
-    const VectorXd z = corners.At(i);
+  for (const VectorXd& z : poses) {
     for (const auto& point : machine.Skeleton(z, theta).points) take(point.p_M);
     bool part_taken = false;
     for (const Machine::FrameView& frame : machine.Frames(z, theta)) {

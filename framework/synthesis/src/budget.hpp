@@ -24,7 +24,7 @@ struct MovedMasses {
                                    double part_kg,
                                    const EvaluationSettings& settings);
 
-/// The worst over the poses of a grid; not a number where no pose could be evaluated.
+/// The worst over the required poses; not a number where no pose could be evaluated.
 struct ToolBudget {
   double stiffness_n_per_mm = 0.0;
   double error_mm = 0.0;
@@ -38,12 +38,12 @@ struct ToolBudget {
 /// guides add as variances (SO 44-55); inertia of what each drive moves bends it (SO 6).
 /// `process_direction`: the tool's axis, 'x', 'y' or 'z'.
 [[nodiscard]] ToolBudget BudgetOf(const kinematics::Machine& machine,
-                                  const PoseGrid& grid,
+                                  const std::vector<Eigen::VectorXd>& poses,
                                   const MovedMasses& masses,
                                   char process_direction,
                                   const EvaluationSettings& settings);
 
-/// Box around part, tool, frames and mechanisms in all corners of a region, in the workpiece-side
+/// Box around part, tool, frames and mechanisms in the required poses, in the workpiece-side
 /// base.
 struct SpaceBox {
   Eigen::Vector3d lower = Eigen::Vector3d::Zero(), upper = Eigen::Vector3d::Zero();
@@ -56,7 +56,7 @@ struct SpaceBox {
   [[nodiscard]] double Content(std::size_t n) const;
 };
 [[nodiscard]] SpaceBox BoxOf(const kinematics::Machine& machine,
-                             const PoseGrid& corners,
+                             const std::vector<Eigen::VectorXd>& poses,
                              const Study& study);
 
 }  // namespace kompono::synthesis

@@ -31,9 +31,6 @@ constexpr double kNmPerArcsec = 1000.0 / kArcsecond_rad;
 const std::vector<Key>& Keys() {
   static const std::vector<Key> keys{
       {{"poses", "1", "poses of the work-zone map", 8, 1e8}, nullptr, &Settings::poses},
-      {{"budget_steps", "1", "poses per coordinate for stiffness and errors", 2, 9},
-       nullptr,
-       &Settings::budget_steps},
       {{"zone_share", "1", "least share of the required zone", 0, 1}, &Settings::zone_share},
       {{"dexterity_goal", "1", "worst 1/condition that sizing asks for", 0, 1},
        &Settings::dexterity_goal},

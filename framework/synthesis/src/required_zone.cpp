@@ -78,6 +78,25 @@ bool Place(const Machine& machine,
   return false;
 }
 
+/// Ends and middle of every length at the angles that z has.
+void AddPoses(const Machine& machine,
+              const std::vector<Pairing>& lengths,
+              VectorXd z,
+              std::vector<VectorXd>& poses) {
+  std::size_t count = 1;
+  for (std::size_t i = 0; i < lengths.size(); ++i) count *= 3;
+  for (std::size_t index = 0; index < count; ++index) {
+    std::vector<double> place;
+    std::size_t rest = index;
+    for (const Pairing& pairing : lengths) {
+      const Interval& range = pairing.motion->range;
+      place.push_back(range.lower + 0.5 * static_cast<double>(rest % 3) * range.width());
+      rest /= 3;
+    }
+    if (Place(machine, lengths, place, z)) poses.push_back(z);
+  }
+}
+
 struct Bounds {
   VectorXd lower, upper;
   void Take(const VectorXd& z) {
@@ -134,7 +153,9 @@ RequiredZone FindRequiredZone(const Machine& machine, const std::vector<Motion>&
   for (std::uint64_t grid = 0; grid < grids; ++grid) {
     VectorXd z = home;
     std::uint64_t rest = grid;
+    bool told = true;  // ends and middles of the angles
     for (const Pairing& other : others) {
+      told = told && rest % kAngleSteps % (kAngleSteps / 2) == 0;
       const double along = static_cast<double>(rest % kAngleSteps) / (kAngleSteps - 1);
       rest /= kAngleSteps;
       const Interval& range = other.motion->range;
@@ -147,6 +168,7 @@ RequiredZone FindRequiredZone(const Machine& machine, const std::vector<Motion>&
       first = false;
     }
     if (!TakeCorners(machine, lengths, z, bounds)) return out;
+    if (told) AddPoses(machine, lengths, z, out.poses);
   }
   out.found = true;
   out.region.z = 0.5 * (bounds.lower + bounds.upper);

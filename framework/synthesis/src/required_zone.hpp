@@ -23,6 +23,9 @@ struct RequiredZone {
   /// there are.
   double content = 1.0;
   std::size_t lengths = 0;
+  /// Required poses: ends and middles of all motions. Where something turns, the box has corners
+  /// that no required pose needs.
+  std::vector<Eigen::VectorXd> poses;
 };
 
 /// Angles are ranges of the rotary coordinates; for each grid of them the translations follow from

@@ -100,7 +100,7 @@ class Runner {
     return chunk;
   }
 
-  ChunkPtr Fill(ChunkPtr chunk) const {
+  [[nodiscard]] ChunkPtr Fill(ChunkPtr chunk) const {
     chunk->rows.reserve(chunk->range.size());
     all_.Visit(chunk->range.begin,
                chunk->range.end,

@@ -80,7 +80,7 @@ class Sizer {
   }
 
  private:
-  std::vector<double> Halton(int index) const {
+  [[nodiscard]] std::vector<double> Halton(int index) const {
     constexpr std::array<int, 8> primes{2, 3, 5, 7, 11, 13, 17, 19};
     std::vector<double> out;
     for (std::size_t i = 0; i < task_.free.size(); ++i) {
@@ -91,7 +91,7 @@ class Sizer {
     return out;
   }
 
-  std::vector<double> Rounded(std::vector<double> values) const {
+  [[nodiscard]] std::vector<double> Rounded(std::vector<double> values) const {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double value = std::round(values[i] / kRounded_mm) * kRounded_mm;
       values[i] = std::clamp(value, task_.free[i].lower, task_.free[i].upper);
@@ -99,7 +99,7 @@ class Sizer {
     return values;
   }
 
-  VectorXd ThetaOf(const std::vector<double>& values) const {
+  [[nodiscard]] VectorXd ThetaOf(const std::vector<double>& values) const {
     VectorXd theta = task_.machine->nominal();
     for (std::size_t i = 0; i < values.size(); ++i) {
       for (const int number : task_.free[i].numbers) theta[number] = values[i];
@@ -108,7 +108,7 @@ class Sizer {
   }
 
   /// The zone where these values put it.
-  analysis::Region RegionOf(const std::vector<double>& values) const {
+  [[nodiscard]] analysis::Region RegionOf(const std::vector<double>& values) const {
     analysis::Region region = *task_.region;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const FreeNumber& free = task_.free[i];
@@ -140,7 +140,7 @@ class Sizer {
 
   /// Diagonal of the box around the mechanism's points, in its own base, in the corners of the
   /// zone. A function of the mechanism alone: equal tasks of different machines give equal sizes.
-  double SizeOf(const PoseJudge& judge, const PoseGrid& corners) const {
+  [[nodiscard]] double SizeOf(const PoseJudge& judge, const PoseGrid& corners) const {
     const PoseJudge::Mechanism& of = judge.mechanisms()[task_.mechanism];
     std::vector<double> x(of.coordinate.size());
     std::vector<double> q(static_cast<std::size_t>(of.shape.drives));

@@ -28,7 +28,6 @@ using kinematics::Machine;
 
 constexpr double kRadian_mm = 100.0;  ///< what a radian counts in the rank of twists
 constexpr double kRankThreshold = 1e-6;
-constexpr std::uint64_t kMostBudgetPoses = 729;
 
 /// What an item or a chain's end adds to the structural metrics.
 struct Counts {
@@ -434,15 +433,11 @@ Verdict Evaluator::State::PassBudget(const Machine& machine,
   const Study& study = space->study();
   const MovedMasses masses = MassesOf(machine, study.part_mass_kg, settings);
   const ToolBudget budget =
-      BudgetOf(machine,
-               PoseGrid::Of(zone.region, settings.budget_steps, kMostBudgetPoses),
-               masses,
-               study.process_direction,
-               settings);
+      BudgetOf(machine, zone.poses, masses, study.process_direction, settings);
   if (budget.poses == 0)
     return Rejection{.status = EvaluationStatus::kFailed,
                      .reason = "no pose of the zone could be evaluated"};
-  const SpaceBox box = BoxOf(machine, PoseGrid::Of(zone.region, 2, 64), study);
+  const SpaceBox box = BoxOf(machine, zone.poses, study);
   constexpr double kUmPerMm = 1000.0;
   row.metrics.Set(MetricId::kStiffness, budget.stiffness_n_per_mm / kUmPerMm);
   row.metrics.Set(MetricId::kErrorBudget, budget.error_mm * kUmPerMm);

@@ -122,7 +122,6 @@ struct Evaluation {
 /// its layouts.
 struct EvaluationSettings {
   std::uint64_t poses = 10000;        ///< of the work-zone map
-  std::uint64_t budget_steps = 3;     ///< poses per coordinate for stiffness and errors
   double zone_share = 0.999;          ///< least share of the required zone; below: rejected
   double dexterity_goal = 0.3;        ///< sizing: worst 1/condition that is asked for
   std::uint64_t sizing_steps = 5;     ///< poses per coordinate while sizing
