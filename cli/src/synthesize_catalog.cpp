@@ -170,7 +170,7 @@ class CatalogRows {
               const synthesis::Enumeration& all)
       : store_(std::move(store)), study_(study), space_(space), all_(all) {}
 
-  Parsed<std::vector<IndexRange>> Missing(const IndexRange& whole) const {
+  [[nodiscard]] Parsed<std::vector<IndexRange>> Missing(const IndexRange& whole) const {
     const auto missing = store_.MissingRanges(study_, Kept(whole));
     if (!missing) return tl::unexpected(missing.error());
     std::vector<IndexRange> out;

@@ -116,7 +116,7 @@ class Synthesis {
       return out;
     }
     for (const auto& [feature, alternative] : study.reference_fix) {
-      const auto choice = space_.ParseChoice(feature + "=" + alternative);
+      const auto choice = space_.ParseChoice(fmt::format("{}={}", feature, alternative));
       if (!choice) {
         out.problem = choice.error().message;
         return out;

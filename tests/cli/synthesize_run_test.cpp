@@ -17,9 +17,10 @@ class SynthesizeRun : public Program {
   }
   /// Everything that the catalog holds, in its fixed order.
   std::string Everything(const std::string& db) {
-    const Outcome outcome = Run({"catalog", "export", db, "--as", "json"});
+    const std::string file = std::string(db).append(".json");
+    const Outcome outcome = Run({"catalog", "export", db, "--as", "json", "--out", file});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return outcome.out;
+    return Read(file);
   }
 };
 

@@ -214,6 +214,7 @@ const MetricDescription* FindMetric(std::string_view name) {
 const std::vector<std::string>& MetricNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> out;
+    out.reserve(kMetrics);
     for (const MetricDescription& metric : kMetricTable) out.emplace_back(metric.name);
     return out;
   }();
