@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kompono/layout/layout.hpp"
+#include "kompono/synthesis/evaluation.hpp"
 #include "kompono/synthesis/study.hpp"
 
 namespace kompono::cli {
@@ -24,8 +25,9 @@ void AddSchema(CLI::App& root, Session& session) {
   session.Choices(command->add_option("KIND", *kind, "layout (if not given) or study"),
                   {"layout", "study"});
   session.OnRun(command, [&session, kind] {
-    std::string schema = *kind == "study" ? synthesis::StudySchema(session.registry())
-                                          : layout::LayoutSchema(session.registry());
+    std::string schema = *kind == "study"
+                             ? synthesis::StudySchema(session.registry(), synthesis::MetricNames())
+                             : layout::LayoutSchema(session.registry());
     if (!schema.ends_with('\n')) schema += '\n';
     session.console.Out(schema);
     return ExitCode::kOk;
