@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three glides with parallelogram struts: pyramid (KSM), linear delta, tri-glide. Two modules share
 // one geometry: rails by their end points, and rails by angles. Equations: README.md.
+#include <kompono/sdk/bound.hpp>
 #include <kompono/sdk/legs.hpp>
 #include <kompono/sdk/mechanism.hpp>
 #include <kompono/sdk/trilateration.hpp>
@@ -31,7 +32,10 @@ class PyramidGeometry : public kompono::sdk::AutodiffMechanism<Derived> {
 
   template <class T>
   void Drives(const In<T>& in, kompono::sdk::DriveValues<T> out) const {
-    const Rails<T> rails = Derived::RailsOf(in);
+    Drives(in, Prepare(in), out);
+  }
+  template <class T>
+  void Drives(const In<T>& in, const Rails<T>& rails, kompono::sdk::DriveValues<T> out) const {
     const Vector3<T> p(in.x[0], in.x[1], in.x[2]);
     for (std::size_t i = 0; i < kLegs; ++i) {
       const auto leg = kompono::sdk::GlidePosition<T>(
@@ -52,8 +56,15 @@ class PyramidGeometry : public kompono::sdk::AutodiffMechanism<Derived> {
   }
 
   template <class T>
+  [[nodiscard]] Rails<T> Prepare(const In<T>& in) const {
+    return Derived::RailsOf(in);
+  }
+  template <class T>
   void Coordinates(const In<T>& in, std::span<T> x) const {
-    const Rails<T> rails = Derived::RailsOf(in);
+    Coordinates(in, Prepare(in), x);
+  }
+  template <class T>
+  void Coordinates(const In<T>& in, const Rails<T>& rails, std::span<T> x) const {
     std::array<Vector3<T>, kLegs> centre;
     for (std::size_t i = 0; i < kLegs; ++i) {
       centre[i] = rails.start[i] + rails.direction[i] * in.q[i] - rails.joint[i];
@@ -139,4 +150,6 @@ class PyramidByAngle final : public PyramidGeometry<PyramidByAngle> {
 KOMPONO_PLUGIN("org.kompono.pyramid",
                "0.1.0",
                KOMPONO_MODULE("pyramid", Pyramid),
-               KOMPONO_MODULE("pyramid_by_angle", PyramidByAngle))
+               KOMPONO_MODULE("pyramid_by_angle", PyramidByAngle),
+               KOMPONO_BOUND_MODULE("pyramid", Pyramid),
+               KOMPONO_BOUND_MODULE("pyramid_by_angle", PyramidByAngle))

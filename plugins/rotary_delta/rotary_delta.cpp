@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three arms that turn about hips on a circle, parallelogram shins, a foot that only translates
 // (LinuxCNC's rotarydeltakins). Equations: README.md.
+#include <kompono/sdk/bound.hpp>
 #include <kompono/sdk/mechanism.hpp>
 #include <kompono/sdk/trilateration.hpp>
 
@@ -18,15 +19,27 @@ class RotaryDelta final : public kompono::sdk::AutodiffMechanism<RotaryDelta> {
   static constexpr kompono::sdk::MechanismSpec kSpec{
       .letters = "XYZ", .drives = 3, .parameters = 7, .modes = 4, .closures = 3, .points = 10};
 
+  template <class T>
+  using Hips = std::array<Vector3<T>, kLegs>;  ///< unit vectors from the axis to each hip
+
+  template <class T>
+  [[nodiscard]] Hips<T> Prepare(const Arguments<T>& in) const {
+    return {Outwards(in, 0), Outwards(in, 1), Outwards(in, 2)};
+  }
+
   /// a cos q - z sin q = k, solved without an inverse cosine: both cosine and sine of q are known
   /// up to the one root.
   template <class T>
   void Drives(const Arguments<T>& in, DriveValues<T> out) const {
+    Drives(in, Prepare(in), out);
+  }
+  template <class T>
+  void Drives(const Arguments<T>& in, const Hips<T>& hips, DriveValues<T> out) const {
     using std::atan2;
     using std::sqrt;
     const T thigh = in.parameter[kThigh];
     for (std::size_t i = 0; i < kLegs; ++i) {
-      const Leg<T> leg = LegOf(in, i);
+      const Leg<T> leg = LegOf(in, hips[i]);
       const T plane = leg.a * leg.a + leg.z * leg.z;
       const T k = (plane + leg.Constant(in)) / (T(2.0) * thigh);
       out.reach[i] = plane - k * k;
@@ -41,7 +54,7 @@ class RotaryDelta final : public kompono::sdk::AutodiffMechanism<RotaryDelta> {
     using std::sin;
     const T thigh = in.parameter[kThigh];
     for (std::size_t i = 0; i < kLegs; ++i) {
-      const Leg<T> leg = LegOf(in, i);
+      const Leg<T> leg = LegOf(in, Outwards(in, i));
       g[i] = leg.a * leg.a + leg.z * leg.z + leg.Constant(in) -
              T(2.0) * thigh * (leg.a * cos(in.q[i]) - leg.z * sin(in.q[i]));
     }
@@ -49,9 +62,13 @@ class RotaryDelta final : public kompono::sdk::AutodiffMechanism<RotaryDelta> {
 
   template <class T>
   void Coordinates(const Arguments<T>& in, std::span<T> x) const {
+    Coordinates(in, Prepare(in), x);
+  }
+  template <class T>
+  void Coordinates(const Arguments<T>& in, const Hips<T>& hips, std::span<T> x) const {
     std::array<Vector3<T>, kLegs> centre;
     for (std::size_t i = 0; i < kLegs; ++i) {
-      centre[i] = Knee(in, i) - Outwards(in, i) * in.parameter[kFoot];
+      centre[i] = Knee(in, hips[i], i) - hips[i] * in.parameter[kFoot];
     }
     const T shin = in.parameter[kShin];
     const Vector3<T> p = kompono::sdk::Trilaterate<T>(centre, {shin, shin, shin}, in.mode[kSide]);
@@ -75,7 +92,7 @@ class RotaryDelta final : public kompono::sdk::AutodiffMechanism<RotaryDelta> {
     const Vector3<T> p(in.x[0], in.x[1], in.x[2]);
     for (std::size_t i = 0; i < kLegs; ++i) {
       point[i] = Outwards(in, i) * in.parameter[kPlatform];
-      point[kLegs + i] = Knee(in, i);
+      point[kLegs + i] = Knee(in, Outwards(in, i), i);
       point[2 * kLegs + i] = p + Outwards(in, i) * in.parameter[kFoot];
     }
     point[3 * kLegs] = p;
@@ -104,19 +121,20 @@ class RotaryDelta final : public kompono::sdk::AutodiffMechanism<RotaryDelta> {
   }
 
   template <class T>
-  [[nodiscard]] static Leg<T> LegOf(const Arguments<T>& in, std::size_t leg) {
-    const Vector3<T> out = Outwards(in, leg);
+  [[nodiscard]] static Leg<T> LegOf(const Arguments<T>& in, const Vector3<T>& out) {
     return {in.x[0] * out[0] + in.x[1] * out[1] + in.parameter[kFoot] - in.parameter[kPlatform],
             in.x[2],
             in.x[1] * out[0] - in.x[0] * out[1]};
   }
 
   template <class T>
-  [[nodiscard]] static Vector3<T> Knee(const Arguments<T>& in, std::size_t leg) {
+  [[nodiscard]] static Vector3<T> Knee(const Arguments<T>& in,
+                                       const Vector3<T>& out,
+                                       std::size_t leg) {
     using std::cos;
     using std::sin;
     const T thigh = in.parameter[kThigh];
-    Vector3<T> knee = Outwards(in, leg) * (in.parameter[kPlatform] + thigh * cos(in.q[leg]));
+    Vector3<T> knee = out * (in.parameter[kPlatform] + thigh * cos(in.q[leg]));
     knee[2] = -(thigh * sin(in.q[leg]));
     return knee;
   }
@@ -124,4 +142,7 @@ class RotaryDelta final : public kompono::sdk::AutodiffMechanism<RotaryDelta> {
 
 }  // namespace
 
-KOMPONO_PLUGIN("org.kompono.rotary_delta", "0.1.0", KOMPONO_MODULE("rotary_delta", RotaryDelta))
+KOMPONO_PLUGIN("org.kompono.rotary_delta",
+               "0.1.0",
+               KOMPONO_MODULE("rotary_delta", RotaryDelta),
+               KOMPONO_BOUND_MODULE("rotary_delta", RotaryDelta))

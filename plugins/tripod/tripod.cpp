@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three pods to one point, three pods with a guide tube, and three pods on hinges (3-RPS).
 // Equations: README.md.
+#include <kompono/sdk/bound.hpp>
 #include <kompono/sdk/legs.hpp>
 #include <kompono/sdk/mechanism.hpp>
 #include <kompono/sdk/trilateration.hpp>
@@ -215,4 +216,5 @@ KOMPONO_PLUGIN("org.kompono.tripod",
                "0.1.0",
                KOMPONO_MODULE("tripod", Tripod),
                KOMPONO_MODULE("tripod_guided", GuidedTripod),
-               KOMPONO_MODULE("tripod_3rps", HingedTripod))
+               KOMPONO_MODULE("tripod_3rps", HingedTripod),
+               KOMPONO_BOUND_MODULE("tripod", Tripod))

@@ -190,5 +190,19 @@ TEST(ForwardNeverLies, DrivesThatFitNoPoseAreRefusedWithTheReason) {
   EXPECT_FALSE(solved.coordinates.allFinite());
 }
 
+TEST(ForwardNeverLies, ALegThatGoesOverToItsOtherSideAndComesBackIsAnotherBranch) {
+  const Machine machine = tests::LoadMachine("hexaglide_mill");
+  kinematics::VectorXd z(6);
+  z << 1781.26, 187.314, 753.627, -1.17857, 1.28669, 1.57145;
+  kinematics::VectorXd readings;
+  machine.DrivesOf(z, machine.nominal(), &readings);
+  ASSERT_TRUE(readings.allFinite());
+  const kinematics::Solution solved = machine.Forward(readings);
+  EXPECT_EQ(solved.status, kinematics::SolveStatus::kOtherAssemblyMode) << solved.coordinates;
+  EXPECT_FALSE(solved.coordinates.allFinite());
+  const kinematics::VectorXd near = z + 1e-3 * (machine.home() - z);
+  EXPECT_TRUE(machine.Forward(readings, machine.nominal(), near).ok());
+}
+
 }  // namespace
 }  // namespace kompono

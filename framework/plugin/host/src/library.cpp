@@ -157,27 +157,64 @@ void* Library::Make(const KomponoModule& entry, std::string& reason) {
 }
 
 template <class Interface>
-tl::expected<std::shared_ptr<const Interface>, Diagnostic> Library::Create(
-    const std::shared_ptr<const Library>& library, const ModuleDescription& module) {
-  const KomponoModule* entry = library->manifest_->modules;
-  while (module.id != entry->id) ++entry;  // JudgeManifest saw that it is there
+tl::expected<std::shared_ptr<Interface>, Diagnostic> Library::Object(
+    const std::shared_ptr<const Library>& library, const KomponoModule& entry) {
   std::string reason;
-  void* const made = Make(*entry, reason);
+  void* const made = Make(entry, reason);
   if (made == nullptr) {
     return tl::unexpected(
         Refused(library->path_,
                 {CodeOf(LoadError::kCreateFailed),
                  fmt::format("module '{}' could not be created: {}",
-                             module.id,
+                             entry.id,
                              reason.empty() ? "the plugin gave no reason" : reason),
                  ""}));
   }
-  const std::shared_ptr<const Interface> object(
+  return std::shared_ptr<Interface>(
       static_cast<Interface*>(made),
-      [destroy = entry->destroy, keep_mapped = library](Interface* p) { destroy(p); });
-  if (auto refusal = JudgeShape(object->Shape(), module))
+      [destroy = entry.destroy, keep_mapped = library](Interface* p) { destroy(p); });
+}
+
+template <class Interface>
+tl::expected<std::shared_ptr<const Interface>, Diagnostic> Library::Create(
+    const std::shared_ptr<const Library>& library, const ModuleDescription& module) {
+  // JudgeManifest saw that it is there.
+  const KomponoModule& entry =
+      *FindEntry(*library->manifest_, module.id, MainInterface(module.kind));
+  auto object = Object<Interface>(library, entry);
+  if (!object) return tl::unexpected(std::move(object.error()));
+  if (auto refusal = JudgeShape((*object)->Shape(), module))
     return tl::unexpected(Refused(library->path_, std::move(*refusal)));
-  return object;
+  return std::shared_ptr<const Interface>(std::move(*object));
+}
+
+tl::expected<std::shared_ptr<const BoundMechanism>, Diagnostic> Library::CreateBound(
+    const std::shared_ptr<const Library>& library,
+    const ModuleDescription& module,
+    std::span<const double> parameters,
+    std::span<const double> modes) {
+  const KomponoModule* entry =
+      FindEntry(*library->manifest_, module.id, KOMPONO_BOUND_MECHANISM_INTERFACE);
+  if (entry == nullptr) {
+    return tl::unexpected(Refused(
+        library->path_,
+        {CodeOf(LoadError::kCreateFailed),
+         fmt::format("module '{}' does not offer {}", module.id, KOMPONO_BOUND_MECHANISM_INTERFACE),
+         "ask it through kompono.mechanism/1, which every mechanism offers"}));
+  }
+  auto object = Object<BoundMechanism>(library, *entry);
+  if (!object) return tl::unexpected(std::move(object.error()));
+  if ((*object)->Bind(parameters, modes) != Status::kOk) {
+    return tl::unexpected(
+        Refused(library->path_,
+                {CodeOf(LoadError::kCreateFailed),
+                 fmt::format("module '{}' could not take {} parameters and {} modes",
+                             module.id,
+                             parameters.size(),
+                             modes.size()),
+                 "give as many as its sidecar says"}));
+  }
+  return std::shared_ptr<const BoundMechanism>(std::move(*object));
 }
 
 template tl::expected<std::shared_ptr<const Mechanism>, Diagnostic> Library::Create(

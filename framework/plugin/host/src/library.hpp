@@ -3,12 +3,14 @@
 #define KOMPONO_PLUGIN_HOST_LIBRARY_HPP_
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include <tl/expected.hpp>
 
 #include "kompono/diagnostics/diagnostic.hpp"
 #include "kompono/plugin/abi.h"
+#include "kompono/plugin/bound_mechanism.hpp"
 #include "kompono/plugin/description.hpp"
 #include "kompono/plugin/interfaces.hpp"
 
@@ -33,12 +35,23 @@ class Library {
   [[nodiscard]] static tl::expected<std::shared_ptr<const Interface>, Diagnostic> Create(
       const std::shared_ptr<const Library>& library, const ModuleDescription& module);
 
+  /// Makes the module's second interface and gives it its geometry.
+  [[nodiscard]] static tl::expected<std::shared_ptr<const BoundMechanism>, Diagnostic> CreateBound(
+      const std::shared_ptr<const Library>& library,
+      const ModuleDescription& module,
+      std::span<const double> parameters,
+      std::span<const double> modes);
+
  private:
   struct Handle;
   Library();
 
   /// Calls the plugin's factory; null and a reason if it gives nothing.
   [[nodiscard]] static void* Make(const KomponoModule& entry, std::string& reason);
+
+  template <class Interface>
+  [[nodiscard]] static tl::expected<std::shared_ptr<Interface>, Diagnostic> Object(
+      const std::shared_ptr<const Library>& library, const KomponoModule& entry);
 
   std::unique_ptr<Handle> handle_;
   const KomponoPlugin* manifest_ = nullptr;

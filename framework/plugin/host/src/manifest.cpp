@@ -100,14 +100,11 @@ std::vector<std::string> Contradictions(const KomponoPlugin& manifest,
     if (!described.contains(id))
       list.push_back(fmt::format("module '{}' is only in the library", id));
   }
-  for (std::uint32_t i = 0; i < manifest.module_count; ++i) {
-    for (const ModuleDescription& module : plugin.modules) {
-      if (module.id == std::string_view(manifest.modules[i].id))
-        compare(fmt::format("the interface of '{}'", module.id),
-                manifest.modules[i].interface_id,
-                module.kind == ModuleKind::kMechanism ? KOMPONO_MECHANISM_INTERFACE
-                                                      : KOMPONO_UNIT_INTERFACE);
-    }
+  for (const ModuleDescription& module : plugin.modules) {
+    const std::string_view wanted = MainInterface(module.kind);
+    const KomponoModule* first = FindEntry(manifest, module.id, {});
+    if (first != nullptr && FindEntry(manifest, module.id, wanted) == nullptr)
+      compare(fmt::format("the interface of '{}'", module.id), first->interface_id, wanted);
   }
   return list;
 }
@@ -138,6 +135,21 @@ std::optional<Refusal> JudgeCounts(const ModuleDescription& module, std::span<co
 
 std::string CodeOf(LoadError error) {
   return fmt::format("E{:04}", static_cast<int>(error));
+}
+
+std::string_view MainInterface(ModuleKind kind) {
+  return kind == ModuleKind::kMechanism ? KOMPONO_MECHANISM_INTERFACE : KOMPONO_UNIT_INTERFACE;
+}
+
+const KomponoModule* FindEntry(const KomponoPlugin& manifest,
+                               std::string_view module_id,
+                               std::string_view interface_id) {
+  for (std::uint32_t i = 0; i < manifest.module_count; ++i) {
+    const KomponoModule& entry = manifest.modules[i];
+    if (module_id == entry.id && (interface_id.empty() || interface_id == entry.interface_id))
+      return &entry;
+  }
+  return nullptr;
 }
 
 std::optional<Refusal> JudgeContract(int major, int minor) {

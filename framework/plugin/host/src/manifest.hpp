@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "kompono/plugin/abi.h"
 #include "kompono/plugin/description.hpp"
@@ -20,6 +21,14 @@ struct Refusal {
 
 /// "E0203"
 [[nodiscard]] std::string CodeOf(LoadError error);
+
+/// The interface that a module of this kind must offer.
+[[nodiscard]] std::string_view MainInterface(ModuleKind kind);
+
+/// The first entry of a module with this interface (empty: any); null if there is none.
+[[nodiscard]] const KomponoModule* FindEntry(const KomponoPlugin& manifest,
+                                             std::string_view module_id,
+                                             std::string_view interface_id);
 
 /// Whether a plugin written for this contract can run here.
 [[nodiscard]] std::optional<Refusal> JudgeContract(int major, int minor);

@@ -242,6 +242,18 @@ tl::expected<std::shared_ptr<const Unit>, Diagnostic> Registry::CreateUnit(
   return state_->Create<Unit>(*this, module_id, ModuleKind::kUnit);
 }
 
+tl::expected<std::shared_ptr<const BoundMechanism>, Diagnostic> Registry::CreateBound(
+    std::string_view module_id,
+    std::span<const double> parameters,
+    std::span<const double> modes) const {
+  const ModuleDescription* module = Find(module_id);
+  if (module == nullptr) return tl::unexpected(UnknownModule(module_id));
+  const std::size_t plugin = state_->offer.implementers.at(module->implementation);
+  auto library = state_->Open(plugin);
+  if (!library) return tl::unexpected(std::move(library.error()));
+  return Library::CreateBound(*library, *Find(module->implementation), parameters, modes);
+}
+
 void Registry::LoadAll() {
   for (std::size_t i = 0; i < state_->found.size(); ++i) {
     PluginRecord& record = state_->found[i].record;

@@ -21,6 +21,7 @@
 #define KOMPONO_CONTRACT_MINOR 0
 #define KOMPONO_MECHANISM_INTERFACE "kompono.mechanism/1"
 #define KOMPONO_UNIT_INTERFACE "kompono.unit/1"
+#define KOMPONO_BOUND_MECHANISM_INTERFACE "kompono.bound_mechanism/1"
 
 /* Facts about how the library was built that must agree with the host. */
 typedef struct KomponoToolchain {
@@ -33,7 +34,8 @@ typedef struct KomponoToolchain {
 
 /* One module. `create` returns a pointer to the C++ interface named by `interface_id`, or null
  * after writing a reason, zero-terminated, into `reason`. Neither function lets an exception out.
- */
+ * A module may have further entries with the same id and other interfaces; a host leaves those that
+ * it does not know alone. */
 typedef struct KomponoModule {
   const char* id;
   const char* interface_id;

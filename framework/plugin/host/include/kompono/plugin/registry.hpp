@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kompono/diagnostics/diagnostic.hpp"
+#include "kompono/plugin/bound_mechanism.hpp"
 #include "kompono/plugin/description.hpp"
 #include "kompono/plugin/interfaces.hpp"
 
@@ -86,6 +87,14 @@ class Registry {
       std::string_view module_id) const;
   [[nodiscard]] tl::expected<std::shared_ptr<const Unit>, Diagnostic> CreateUnit(
       std::string_view module_id) const;
+
+  /// The mechanism with its geometry fixed, where its plugin offers kompono.bound_mechanism/1: one
+  /// pose at a time costs least so. Numbers as the sidecar orders them, mm and rad. E0209 if it
+  /// does not offer it.
+  [[nodiscard]] tl::expected<std::shared_ptr<const BoundMechanism>, Diagnostic> CreateBound(
+      std::string_view module_id,
+      std::span<const double> parameters,
+      std::span<const double> modes) const;
 
   /// Loads every library and checks it, and each of its modules, against the sidecar, so that
   /// `plugins()` tells what is really usable. Spans and pointers given out before are void then.

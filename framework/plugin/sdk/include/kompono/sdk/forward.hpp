@@ -48,7 +48,8 @@ class ForwardSolver {
   struct Trace {
     T first_det{0.0};
     T last_det{0.0};
-    int iterations = 0;  ///< matrices factored
+    int iterations = 0;      ///< matrices factored
+    bool mode_left = false;  ///< on the way a leg went over to its other side
   };
 
   /// One attempt from a point of the mechanism: `x` with its drives `q_start`, to `q`. Writes x
@@ -128,8 +129,11 @@ class ForwardSolver {
       if (reached < 1.0 && Guess(x_start, q, trace, x)) reached = 1.0;
     }
     iterations = trace.iterations;
-    return reached < 1.0 ? plugin::ForwardOutcome::kBlocked
-                         : Confirm(x_start, x, q, trace.first_det, limits);
+    if (reached < 1.0) {
+      return trace.mode_left ? plugin::ForwardOutcome::kOtherMode
+                             : plugin::ForwardOutcome::kBlocked;
+    }
+    return Confirm(x_start, x, q, trace.first_det, limits);
   }
 
   /// What remains to be asked of a proven step or way. Ambiguous is what has another pose beyond a
@@ -204,7 +208,8 @@ class ForwardSolver {
   static constexpr double kShort = 0.02;  ///< a way of this part of the size needs no such doubt
 
   /// Along the straight way of the drives, in steps that pass, the first of them `part` of it;
-  /// returns how much of it was done, with x there.
+  /// returns how much of it was done, with x there. The way ends where a leg goes over to its other
+  /// side, although it may come back later: what lies beyond is another branch.
   double Creep(Vector<double>& x,
                const DriveVector<double>& start,
                const DriveVector<double>& q,
@@ -223,6 +228,11 @@ class ForwardSolver {
       const bool passed = Step(trial, here, there, attempt);
       trace.iterations += attempt.iterations;
       if (passed && (done == 0.0 || attempt.first_det * trace.first_det > 0.0)) {
+        if (Equations::kWorkingModes && !OnWorkingMode(trial, there)) {
+          trace.mode_left = true;
+          if (done == 0.0) trace.first_det = attempt.first_det;
+          break;
+        }
         if (done == 0.0) trace.first_det = attempt.first_det;
         x = trial;
         here = there;

@@ -19,13 +19,10 @@ template <class Module>
 using InterfaceOf = std::
     conditional_t<std::is_base_of_v<plugin::Mechanism, Module>, plugin::Mechanism, plugin::Unit>;
 
-template <class Module>
-void* CreateModule(char* reason, std::size_t reason_bytes) {
-  static_assert(
-      std::is_base_of_v<plugin::Mechanism, Module> || std::is_base_of_v<plugin::Unit, Module>,
-      "a module derives from AutodiffMechanism or AutodiffUnit");
+template <class Object, class Interface>
+void* CreateObject(char* reason, std::size_t reason_bytes) {
   try {
-    return static_cast<InterfaceOf<Module>*>(new Module());
+    return static_cast<Interface*>(new Object());
   } catch (const std::exception& error) {
     std::snprintf(reason, reason_bytes, "%s", error.what());
   } catch (...) {
@@ -35,9 +32,22 @@ void* CreateModule(char* reason, std::size_t reason_bytes) {
   return nullptr;
 }
 
+template <class Interface>
+void DestroyObject(void* object) {
+  delete static_cast<Interface*>(object);
+}
+
+template <class Module>
+void* CreateModule(char* reason, std::size_t reason_bytes) {
+  static_assert(
+      std::is_base_of_v<plugin::Mechanism, Module> || std::is_base_of_v<plugin::Unit, Module>,
+      "a module derives from AutodiffMechanism or AutodiffUnit");
+  return CreateObject<Module, InterfaceOf<Module>>(reason, reason_bytes);
+}
+
 template <class Module>
 void DestroyModule(void* module) {
-  delete static_cast<InterfaceOf<Module>*>(module);
+  DestroyObject<InterfaceOf<Module>>(module);
 }
 
 template <class Module>
