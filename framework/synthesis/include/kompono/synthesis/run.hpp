@@ -44,7 +44,7 @@ using Sink = std::function<Diagnostics(const IndexRange& range, std::span<const 
 
 struct RunOptions {
   unsigned threads = 0;      ///< 0: all cores
-  std::uint64_t chunk = 64;  ///< candidates handed on together; borders are multiples of it
+  std::uint64_t chunk = 16;  ///< candidates handed on together; borders are multiples of it
   const std::atomic<bool>* stop = nullptr;        ///< what is begun is finished and handed on
   std::function<void(const Progress&)> progress;  ///< about ten times a second
 };
