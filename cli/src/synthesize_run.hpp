@@ -18,8 +18,8 @@ struct SynthesizeRunOptions {
   std::string catalog;  ///< file that keeps the rows; empty: they are forgotten
   std::string shard;    ///< "k/N"
   unsigned threads = 0;
-  std::uint64_t limit = 0;              ///< at most so many candidates now; 0: all
-  std::size_t front = 20;               ///< rows of the front that are shown
+  std::uint64_t limit = 0;  ///< at most so many candidates now; 0: all
+  std::size_t front = 20;   ///< rows of the front that are shown
 };
 
 void AddRunOptions(CLI::App& command, Session& session, SynthesizeRunOptions& options);
