@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -146,11 +147,13 @@ TEST(Hexapod, IsIdentifiedWithCovarianceInSevenMilliseconds) {
     m.sigma_rad = kNoiseRad;
   }
   double best_ms = 1e9;
-  // The best of many, so that other work on the machine does not count.
+  // Processor time of all threads and the best of many, so that other work on the machine does not
+  // count.
   for (int i = 0; i < 40 && best_ms > 6.0; ++i) {
+    const std::clock_t begin = std::clock();
     const CalibrationReport report = Identify(machine, set);
     ASSERT_EQ(report.covariance.rows(), 42);
-    best_ms = std::min(best_ms, report.total_ms);
+    best_ms = std::min(best_ms, 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   RecordProperty("total_ms", std::to_string(best_ms));
 #ifdef NDEBUG
