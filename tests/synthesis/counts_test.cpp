@@ -85,14 +85,15 @@ TEST(Counts, OfThreePairsAddUp) {
   }
 }
 
-/// ISO 10791-2 lists twelve layouts of machining centres with a vertical spindle; written here as
-/// all those of X, Y and Z in which Z is not between the workpiece and the bed.
+/// ISO 10791-2 lists twelve layouts of machining centres with a vertical spindle. Its table is not
+/// at hand: these twelve are the orders of X, Y and Z whose Z moves the head, which is what one
+/// would expect there; the other twelve orders are in the space without the rule.
 TEST(Counts, TheTwelveVerticalLayoutsAreExpressed) {
   const std::string study = PlainStudy("XYZ", "string") +
                             "[ends.spindle]\nside = \"tool\"\nchain = \"C_v tool\"\n"
                             "[[rule]]\nname = \"the spindle's head moves in Z\"\n"
                             "forbid = [\"part:Z\"]\nkind = \"normative\"\n"
-                            "reason = \"the standard's layouts\"\nauthor = \"ISO 10791-2\"\n";
+                            "reason = \"the head moves vertically\"\nauthor = \"this test\"\n";
   const Outcome outcome = BuildStudy(study);
   ASSERT_TRUE(outcome.space) << outcome.complaints;
   std::set<std::string> texts;

@@ -94,7 +94,7 @@ bool SingularSquaresOfProduct(const Table<N>& table,
                               std::size_t drives,
                               Number& least,
                               Number& most) {
-  lanes::Symmetric<N> product;
+  lanes::Symmetric<N> product;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
   for (std::size_t p = 0; p < N; ++p) {
     for (std::size_t q = 0; q <= p; ++q) {
       Number sum = table.j[p][0] * table.j[q][0];
