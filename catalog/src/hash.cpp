@@ -3,6 +3,7 @@
 
 #include <openssl/evp.h>
 
+#include <memory>
 #include <stdexcept>
 
 namespace kompono::catalog {
@@ -21,13 +22,22 @@ const EVP_MD* Algorithm() {
   return algorithm;
 }
 
+/// Kept: making one takes longer than hashing a short text.
+EVP_MD_CTX* Context() {
+  thread_local const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context{
+      EVP_MD_CTX_new(), &EVP_MD_CTX_free};
+  return context.get();
+}
+
 }  // namespace
 
 Sha256 Sha256Of(std::string_view bytes) {
   Sha256 digest{};
   unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, Algorithm(), nullptr) != 1 ||
-      size != digest.size()) {
+  EVP_MD_CTX* const context = Context();
+  if (context == nullptr || EVP_DigestInit_ex2(context, Algorithm(), nullptr) != 1 ||
+      EVP_DigestUpdate(context, bytes.data(), bytes.size()) != 1 ||
+      EVP_DigestFinal_ex(context, digest.data(), &size) != 1 || size != digest.size()) {
     throw std::runtime_error("libcrypto offers no SHA-256");
   }
   return digest;

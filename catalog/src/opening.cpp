@@ -198,9 +198,8 @@ Parsed<Opened> OpenForWriting(const fs::path& path, std::chrono::milliseconds ti
     opened.notes = *std::move(notes);
   }
   opened.db->exec("PRAGMA journal_mode = WAL");
-  // Bulk loads insert at random places of the indexes: keep more of them, and move the log into the
-  // file less often.
-  opened.db->exec("PRAGMA cache_size = -262144");
+  opened.db->exec(fmt::format("PRAGMA cache_size = {}", -kWriterCache_kib));
+  // Many pages are written again and again: move the log into the file less often.
   opened.db->exec("PRAGMA wal_autocheckpoint = 16384");
   if (BulkLoading(*opened.db)) {
     EndBulk(*opened.db);

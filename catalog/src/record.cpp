@@ -36,6 +36,7 @@ class Bytes {
     }
     bytes_.append(little.data(), little.size());
   }
+  void Reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   [[nodiscard]] Sha256 Digest() const { return Sha256Of(bytes_); }
 
  private:
@@ -60,7 +61,8 @@ class Judge {
 
   void Require(bool good, const Subject& subject, std::string_view fault) {
     if (!good)
-      found_.push_back(Complaint("E0511", file_, fmt::format("{} {}", subject.Text(), fault)));
+      found_.push_back(
+          Complaint("E0511", std::string(file_), fmt::format("{} {}", subject.Text(), fault)));
   }
   void Text(std::string_view text, const Subject& subject) {
     Require(IsText(text), subject, "is not UTF-8 text");
@@ -77,19 +79,30 @@ class Judge {
   }
   template <class List, class Key>
   void Unique(const List& list, std::string_view what, Key key) {
+    // Few compare quicker in pairs, without a list of their own.
+    constexpr std::size_t kFew = 6;
+    if (list.size() <= kFew) {
+      for (auto one = list.begin(); one != list.end(); ++one) {
+        const auto same = [&](const auto& other) { return key(other) == key(*one); };
+        Require(std::none_of(list.begin(), one, same), {what, std::get<0>(key(*one))}, kTwice);
+      }
+      return;
+    }
     using Keys = std::vector<decltype(key(*list.begin()))>;
     Keys keys;
     keys.reserve(list.size());
     for (const auto& item : list) keys.push_back(key(item));
     std::sort(keys.begin(), keys.end());
     for (std::size_t i = 1; i < keys.size(); ++i) {
-      Require(keys[i] != keys[i - 1], {what, std::get<0>(keys[i])}, "is given twice");
+      Require(keys[i] != keys[i - 1], {what, std::get<0>(keys[i])}, kTwice);
     }
   }
   [[nodiscard]] Diagnostics Take() { return std::move(found_); }
 
  private:
-  std::string file_;
+  static constexpr std::string_view kTwice = "is given twice";
+
+  std::string_view file_;
   Diagnostics found_;
 };
 
@@ -252,6 +265,7 @@ nlohmann::ordered_json ResultsJson(const LayoutRecord& record) {
 
 Sha256 ContentDigest(const LayoutRecord& record) {
   Bytes bytes;
+  bytes.Reserve(512 + record.content.size() + (record.content.empty() ? record.toml.size() : 0));
   bytes.Add("kompono layout 1");
   bytes.Add(record.name);
   bytes.Add(record.formula);

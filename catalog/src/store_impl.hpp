@@ -69,7 +69,9 @@ auto Store::Impl::Writing(Work&& work) -> decltype(work()) {
     SQLite::Transaction transaction(*db, SQLite::TransactionBehavior::IMMEDIATE);
     writer->Begin(BulkLoading(*db));
     auto result = work();
-    if (result) transaction.commit();
+    if (!result) return result;
+    studies->Flush();
+    transaction.commit();
     return result;
   });
   if (!outcome) {

@@ -29,8 +29,8 @@ StudyWriter::StudyWriter(SQLite::Database& db, Writer& writer)
       run_(db, "INSERT INTO run(study_id, provenance_id, started_at) VALUES(?, ?, ?)"),
       find_run_(db,
                 "SELECT id FROM run WHERE study_id = ? AND provenance_id = ? AND started_at = ?"),
-      evaluation_(db, "INSERT INTO evaluation VALUES(?, ?, ?, ?, ?)"),
-      metric_(db, "INSERT INTO evaluation_metric VALUES(?, ?, ?, ?, ?)"),
+      evaluation_(db, "evaluation", 5),
+      metric_(db, "evaluation_metric", 5),
       before_(db,
               "SELECT begin FROM run_range WHERE study_id = ? AND past = ? AND run_id = ? "
               "AND begin = (SELECT max(begin) FROM run_range WHERE study_id = ?1 AND begin < ?2)"),
@@ -106,11 +106,12 @@ std::int64_t StudyWriter::RunOf(std::int64_t study, Run& run, const std::string&
 void StudyWriter::Write(std::int64_t study,
                         const EvaluationRecord& record,
                         std::int64_t provenance) {
+  if (evaluation_.Rows() == kMostWaiting) Flush();
   const std::array<std::string_view, 3> columns{Word(record.status), record.stage, record.reason};
   evaluation_.Integer(study).Integer(record.candidate).Integer(verdicts_.Find(columns).id);
   if (record.layout) {
-    const std::int64_t layout = writer_.AddOfStudy(*record.layout, record.metrics, provenance).id;
-    evaluation_.Integer(writer_.FormulaOf(*record.layout)).Integer(layout).Run();
+    const Writer::OfStudy stored = writer_.AddOfStudy(*record.layout, record.metrics, provenance);
+    evaluation_.Integer(stored.formula).Integer(stored.layout);
     return;
   }
   if (record.formula.empty()) {
@@ -118,11 +119,17 @@ void StudyWriter::Write(std::int64_t study,
   } else {
     evaluation_.Integer(writer_.FormulaOf(record.formula));
   }
-  evaluation_.Null().Run();
+  evaluation_.Null();
   for (const Metric& metric : record.metrics) {
     metric_.Integer(study).Integer(record.candidate).Integer(writer_.MeasureOf(metric));
-    metric_.RealOrNull(metric.value).TextOrNull(metric.failure).Run();
+    metric_.RealOrNull(metric.value).TextOrNull(metric.failure);
   }
+}
+
+void StudyWriter::Flush() {
+  writer_.Flush();
+  evaluation_.Write();
+  metric_.Write();
 }
 
 /// Joins the range with its neighbours of the same run, so that a run of a million chunks has few.

@@ -3,6 +3,7 @@
 #define KOMPONO_CATALOG_SRC_STUDY_WRITING_HPP_
 
 #include "command.hpp"
+#include "waiting_rows.hpp"
 #include "writing.hpp"
 #include <SQLiteCpp/Database.h>
 
@@ -39,7 +40,12 @@ class StudyWriter {
                       std::span<const EvaluationRecord> records,
                       const RunOrigin* origin = nullptr);
 
+  /// Writes what waits, the Writer's first.
+  void Flush();
+
  private:
+  static constexpr std::size_t kMostWaiting = 64;
+
   struct Run {
     std::int64_t id = 0;  ///< 0: not yet written
     std::int64_t provenance = 0;
@@ -59,8 +65,8 @@ class StudyWriter {
   Command study_provenance_;
   Command run_;
   Command find_run_;
-  Command evaluation_;
-  Command metric_;
+  WaitingRows evaluation_;
+  WaitingRows metric_;
   Command before_;
   Command after_;
   Command range_;

@@ -82,20 +82,22 @@ Writer::Writer(SQLite::Database& db)
       motion_(db, "INSERT INTO motion VALUES(?, ?, ?, ?, ?, ?)"),
       plugin_(db, "INSERT INTO provenance_plugin VALUES(?, ?, ?)"),
       layout_(db,
-              "INSERT INTO layout(hash_key, content_hash, name, formula_id, coordinates, drives, "
-              "provenance_id, added_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?)"),
-      text_(db, "INSERT INTO layout_text VALUES(?, ?, ?)"),
+              "layout(id, hash_key, content_hash, name, formula_id, coordinates, drives, "
+              "provenance_id, added_at)",
+              9),
+      text_(db, "layout_text", 3),
       refresh_derived_(db,
                        "UPDATE layout SET coordinates = ?2, drives = ?3 WHERE id = ?1 "
                        "AND (coordinates <> ?2 OR drives <> ?3)"),
       refresh_text_(db, "UPDATE layout_text SET toml = ?2 WHERE layout_id = ?1 AND toml IS NOT ?2"),
       refresh_provenance_(db, "UPDATE layout SET provenance_id = ?2 WHERE id = ?1"),
-      block_(db, "INSERT INTO layout_block VALUES(?, ?, ?, ?)"),
-      parameter_(db, "INSERT INTO parameter VALUES(?, ?, ?)"),
+      block_(db, "layout_block", 4),
+      parameter_(db, "parameter", 3),
+      fresh_metric_(db, "metric", 5),
+      fresh_capability_(db, "capability", 4),
       metric_(db,
               "INSERT INTO metric VALUES(?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET value = ?3, "
               "failure = ?4, provenance_id = ?5 WHERE value IS NOT ?3 OR failure IS NOT ?4"),
-      fresh_metric_(db, "INSERT INTO metric VALUES(?, ?, ?, ?, ?)"),
       capability_(
           db,
           "INSERT INTO capability VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET detail = ?3, "
@@ -195,31 +197,36 @@ std::int64_t Writer::ProvenanceOf(const Provenance& provenance, std::string_view
 void Writer::Begin(bool bulk) {
   now_ = Now();
   hashes_.Begin(bulk);
+  // The transaction holds the write lock: nobody else numbers layouts.
+  newest_layout_ = db_.execAndGet("SELECT coalesce(max(id), 0) FROM layout").getInt64();
 }
 
 AddResult Writer::Add(const LayoutRecord& record) {
   const std::int64_t provenance = ProvenanceOf(record.provenance, record.toml);
-  const AddResult result = Put(record, record.metrics, provenance);
-  const bool fresh = result.status == AddStatus::kAdded;
-  const bool words =
-      fresh || result.status == AddStatus::kUpdated || has_words_.Integer(result.id).Ask() == 0;
-  if (words) RefreshWords(result.id, fresh);
+  const AddResult result = Put(record, FormulaOf(record), record.metrics, provenance);
+  if (result.status == AddStatus::kAdded) {
+    waiting_for_words_.push_back(result.id);
+  } else if (result.status == AddStatus::kUpdated || has_words_.Integer(result.id).Ask() == 0) {
+    clear_words_.Integer(result.id).Run();
+    words_.Integer(result.id).Run();
+  }
   return result;
 }
 
-AddResult Writer::AddOfStudy(const LayoutRecord& record,
-                             std::span<const Metric> metrics,
-                             std::int64_t provenance) {
-  return Put(record, metrics, provenance);
+Writer::OfStudy Writer::AddOfStudy(const LayoutRecord& record,
+                                   std::span<const Metric> metrics,
+                                   std::int64_t provenance) {
+  const std::int64_t formula = FormulaOf(record);
+  return {.layout = Put(record, formula, metrics, provenance).id, .formula = formula};
 }
 
 AddResult Writer::Put(const LayoutRecord& record,
+                      std::int64_t formula,
                       std::span<const Metric> metrics,
                       std::int64_t provenance) {
   const Sha256 digest = ContentDigest(record);
-  const std::int64_t formula = FormulaOf(record);
   AddResult result;
-  if (const std::optional<std::int64_t> found = hashes_.Find(digest)) {
+  if (const std::optional<std::int64_t> found = Find(digest)) {
     result.id = *found;
     int changed = RefreshDerived(result.id, record);
     changed += RefreshText(result.id, record, provenance);
@@ -229,36 +236,66 @@ AddResult Writer::Put(const LayoutRecord& record,
     result.status = changed > 0 ? AddStatus::kUpdated : AddStatus::kUnchanged;
     return result;
   }
-  layout_.Integer(KeyOf(digest)).Digest(digest).Text(record.name).Integer(formula);
-  layout_.Integer(record.coordinates).Integer(record.drives).Integer(provenance).Text(now_).Run();
-  result.id = db_.getLastInsertRowid();
-  hashes_.Added(digest, result.id);
-  AddStructure(result.id, record);
+  result.id = PutNew(digest, record, formula, provenance);
   for (const Metric& metric : metrics) {
     fresh_metric_.Integer(result.id).Integer(MeasureOf(metric)).RealOrNull(metric.value);
-    fresh_metric_.TextOrNull(metric.failure).Integer(provenance).Run();
+    fresh_metric_.TextOrNull(metric.failure).Integer(provenance);
   }
-  AddCapabilities(result.id, record, provenance);
-  AddCalibrations(result.id, record, provenance);
+  for (const Capability& capability : record.capabilities) {
+    fresh_capability_.Integer(result.id).Integer(TermOf(capability.name));
+    fresh_capability_.Text(capability.detail).Integer(provenance);
+  }
+  if (!record.calibrations.empty()) {
+    Flush();  // their rows refer to the layout's
+    AddCalibrations(result.id, record, provenance);
+  }
   return result;
 }
 
-void Writer::RefreshWords(std::int64_t layout, bool fresh) {
-  if (!fresh) clear_words_.Integer(layout).Run();
-  words_.Integer(layout).Run();
+/// What is found can be read and changed at once.
+std::optional<std::int64_t> Writer::Find(const Sha256& digest) {
+  const std::span<const Sha256> waiting = std::span(waiting_digests_).first(waiting_);
+  if (std::find(waiting.begin(), waiting.end(), digest) != waiting.end()) Flush();
+  return hashes_.Find(digest);
+}
+
+std::int64_t Writer::PutNew(const Sha256& digest,
+                            const LayoutRecord& record,
+                            std::int64_t formula,
+                            std::int64_t provenance) {
+  if (waiting_ == kMostWaiting) Flush();
+  const Sha256& kept = waiting_digests_.at(waiting_++) = digest;
+  const std::int64_t id = ++newest_layout_;
+  layout_.Integer(id).Integer(KeyOf(digest)).Digest(kept).Text(record.name).Integer(formula);
+  layout_.Integer(record.coordinates).Integer(record.drives).Integer(provenance).Text(now_);
+  hashes_.Added(digest, id);
+  AddStructure(id, record);
+  return id;
+}
+
+void Writer::Flush() {
+  layout_.Write();  // first, because the others refer to it
+  text_.Write();
+  block_.Write();
+  parameter_.Write();
+  fresh_metric_.Write();
+  fresh_capability_.Write();
+  waiting_ = 0;
+  for (const std::int64_t layout : waiting_for_words_) words_.Integer(layout).Run();
+  waiting_for_words_.clear();
 }
 
 void Writer::AddStructure(std::int64_t layout, const LayoutRecord& record) {
-  text_.Integer(layout).Text(record.toml).TextOrNull(record.content).Run();
+  text_.Integer(layout).Text(record.toml).TextOrNull(record.content);
   std::int64_t position = 0;
   for (const Block& block : record.blocks) {
     const std::int64_t module =
         modules_.Find(std::array<std::string_view, 2>{block.module, block.plugin}).id;
-    block_.Integer(layout).Integer(position++).Text(block.name).Integer(module).Run();
+    block_.Integer(layout).Integer(position++).Text(block.name).Integer(module);
   }
   for (const Parameter& parameter : record.parameters) {
     const std::int64_t quantity = QuantityOf(parameter.name, parameter.unit);
-    parameter_.Integer(layout).Integer(quantity).Real(parameter.value).Run();
+    parameter_.Integer(layout).Integer(quantity).Real(parameter.value);
   }
 }
 
