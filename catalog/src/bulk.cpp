@@ -49,7 +49,7 @@ void EndBulk(SQLite::Database& db) {
   }
   db.exec("DELETE FROM bulk_load");
   transaction.commit();
-  Cache(db, kWriterCache_kib);
+  Cache(db, kWriterCacheKib);
   db.exec("PRAGMA ignore_check_constraints = OFF");
   db.exec("PRAGMA foreign_keys = ON");
 }

@@ -11,7 +11,7 @@ namespace kompono::catalog {
 
 /// What a writer keeps of the file in memory outside bulk loads: it adds to indexes at random
 /// places.
-inline constexpr int kWriterCache_kib = 262'144;
+inline constexpr int kWriterCacheKib = 262'144;
 
 /// Indexes whose entries come in random order: with a million layouts nearly every new row dirties
 /// another page of them, while sorting all entries once takes seconds.

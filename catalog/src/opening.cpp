@@ -198,7 +198,7 @@ Parsed<Opened> OpenForWriting(const fs::path& path, std::chrono::milliseconds ti
     opened.notes = *std::move(notes);
   }
   opened.db->exec("PRAGMA journal_mode = WAL");
-  opened.db->exec(fmt::format("PRAGMA cache_size = {}", -kWriterCache_kib));
+  opened.db->exec(fmt::format("PRAGMA cache_size = {}", -kWriterCacheKib));
   // Many pages are written again and again: move the log into the file less often.
   opened.db->exec("PRAGMA wal_autocheckpoint = 16384");
   if (BulkLoading(*opened.db)) {

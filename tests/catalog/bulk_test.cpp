@@ -69,5 +69,40 @@ TEST_F(BulkTest, AddsManyInChunksAndFindsThemAgain) {
   EXPECT_EQ(report->layouts, kCount);
 }
 
+/// 64 rows wait at a time: repetitions stand among them, behind them and far away.
+TEST_F(BulkTest, WhatIsRepeatedWhileItsRowsWaitIsOneLayout) {
+  std::vector<LayoutRecord> records = Sized(203);
+  for (LayoutRecord& record : records) record.capabilities = {{.name = "turns", .detail = "C"}};
+  records[3] = records[2];
+  records[70] = records[1];
+  records[202] = records[201];
+  records[202].metrics[0].value = 1.0;
+  for (const bool bulk : {false, true}) {
+    Store store = Create(bulk ? "bulk.db" : "plain.db");
+    if (bulk) {
+      ASSERT_TRUE(store.BeginBulk().empty());
+    }
+    const auto added = store.AddAll(records);
+    ASSERT_TRUE(added) << Said(added.error());
+    if (bulk) {
+      ASSERT_TRUE(store.EndBulk().empty());
+    }
+    EXPECT_EQ((*added)[3].id, (*added)[2].id);
+    EXPECT_EQ((*added)[3].status, AddStatus::kUnchanged);
+    EXPECT_EQ((*added)[70].id, (*added)[1].id);
+    EXPECT_EQ((*added)[202].id, (*added)[201].id);
+    EXPECT_EQ((*added)[202].status, AddStatus::kUpdated);
+    const Parsed<Statistics> stats = store.Stats();
+    EXPECT_EQ(stats->layouts, 200);
+    EXPECT_EQ(stats->metrics, 400);
+    const Parsed<Table> last =
+        store.Query({.where = "metric.workspace_volume = 1", .columns = "name"});
+    ASSERT_TRUE(last) << Said(last.error());
+    EXPECT_EQ(last->rows.size(), 1U);
+    EXPECT_EQ(store.Search("turns", 1000)->size(), 200U) << "each has its words once";
+    EXPECT_EQ(Said(store.Verify()->findings), "");
+  }
+}
+
 }  // namespace
 }  // namespace kompono::catalog
