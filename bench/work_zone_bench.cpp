@@ -2,6 +2,7 @@
 // The work zone of a hexapod, pose by pose: reach and ranges of six pods, hand-written for doubles
 // in this file, against the analysis on one core and on two, through the plugin's batches.
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
@@ -159,6 +160,22 @@ void Counted(benchmark::State& state, unsigned threads) {
   state.SetItemsProcessed(state.iterations() * Poses());
 }
 
+/// Time and memory by the number of poses, that no more than a block of is held.
+void Growth(benchmark::State& state) {
+  const Machine& machine = Hexapod();
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), Limits{});
+  const Region region = Zone(machine);
+  const std::array<std::uint64_t, 3> steps{
+      100, 100, static_cast<std::uint64_t>(state.range(0)) / 10000};
+  PoseCount count;
+  for (auto _ : state) count = CountGrid(*judge, region, steps, false, {.threads = 1});
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  state.counters["peak_MiB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  state.counters["inside"] = static_cast<double>(count.inside) / static_cast<double>(count.poses);
+}
+
 /// With the condition number of every pose: plain code would need a Jacobian and a decomposition.
 void Conditioned(benchmark::State& state, unsigned threads) {
   const Machine& machine = Hexapod();
@@ -194,6 +211,11 @@ BENCHMARK_CAPTURE(Conditioned, two, 2)
     ->UseRealTime();
 BENCHMARK(Plain)->Name("zone/baseline")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Counted, one, 1)->Name("zone/one_core")->Unit(benchmark::kMillisecond);
+BENCHMARK(Growth)
+    ->Name("zone/growth")
+    ->RangeMultiplier(10)
+    ->Range(100000, 100000000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Counted, two, 2)
     ->Name("zone/two_cores")
     ->Unit(benchmark::kMillisecond)

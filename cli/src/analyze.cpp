@@ -140,10 +140,9 @@ void ReadLimits(const Options& options, AnalysisTask& task, Diagnostics& problem
     const auto number = joint.Number(assignment, problems);
     if (number) task.limits.swings.push_back({assignment.name, *number / kDegPerRad});
   }
-  task.limits.drive_ranges = !options.no_ranges;
-  task.limits.strut_radius_mm = 0.5 * options.strut_diameter.value_or(0.0);
-  if (options.clearance || options.strut_diameter)
-    task.limits.clearance_mm = options.clearance.value_or(0.0);
+  task.limits.of_layout = !options.no_ranges;
+  if (options.strut_diameter) task.limits.strut_radius_mm = 0.5 * *options.strut_diameter;
+  task.limits.clearance_mm = options.clearance;
 }
 
 /// "250x250x150".

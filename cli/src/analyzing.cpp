@@ -81,7 +81,8 @@ void FindDexterity(const AnalysisTask& task, const Region& region, AnalysisResul
     one.length_mm =
         task.length_mm ? *task.length_mm : analysis::CharacteristicLength(*out.judge, m);
     one.home = analysis::DexterityAt(*out.judge, m, out.machine->home(), one.length_mm);
-    one.field = analysis::DexterityOver(*out.judge, m, one.length_mm, region, steps, task.control);
+    one.field = analysis::DexterityOver(
+        *out.judge, m, one.length_mm, region, steps, task.control, task.regular);
     out.stopped = out.stopped || one.field.stopped;
     out.dexterity.push_back(std::move(one));
   }

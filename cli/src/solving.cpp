@@ -4,7 +4,10 @@
 #include "text.hpp"
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "kompono/analysis/pose_judge.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -36,6 +39,31 @@ void CheckLimit(std::string_view what,
   if (upper && value > *upper + kSlack) complain("above", *upper);
 }
 
+bool LimitsStruts(const layout::Block& block) {
+  return !block.joints.empty() || block.strut_diameter || block.clearance;
+}
+
+/// Swings of passive joints and clearances between struts, where the layout limits them.
+void CheckStruts(const Machine& machine,
+                 const kinematics::Solution& solution,
+                 std::vector<std::string>& out) {
+  const auto& blocks = machine.layout().blocks;
+  if (std::none_of(blocks.begin(), blocks.end(), LimitsStruts)) return;
+  const auto judge = analysis::PoseJudge::Make(machine, machine.nominal(), {});
+  if (!judge) return;  // the layout's own patterns were judged when it was read
+  for (const auto& broken : analysis::BrokenStrutLimits(*judge, solution.coordinates)) {
+    const bool swing = broken.constraint->kind == analysis::Constraint::Kind::kSwing;
+    out.push_back(swing ? fmt::format("{} by {} deg lies above its limit {} deg",
+                                      broken.constraint->name,
+                                      Fixed(Outward(broken.value, true)),
+                                      Brief(Outward(broken.limit, true)))
+                        : fmt::format("{}: their centre lines are {} mm apart and must keep {} mm",
+                                      broken.constraint->name,
+                                      Fixed(broken.value),
+                                      Brief(broken.limit)));
+  }
+}
+
 std::vector<std::string> Limits(const Machine& machine, const kinematics::Solution& solution) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < machine.drives().size(); ++i) {
@@ -60,6 +88,7 @@ std::vector<std::string> Limits(const Machine& machine, const kinematics::Soluti
                coordinate.upper,
                out);
   }
+  CheckStruts(machine, solution, out);
   return out;
 }
 

@@ -40,6 +40,48 @@ TEST(Dexterity, OfManyPosesIsThatOfEachForEveryMechanism) {
   }
 }
 
+/// Of the drives by the coordinates; NaN where they differ in number.
+double Determinant(const PoseJudge::Mechanism& mechanism, const VectorXd& z) {
+  const std::size_t n = mechanism.coordinate.size();
+  if (n != static_cast<std::size_t>(mechanism.shape.drives)) return NAN;
+  std::vector<double> x(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = mechanism.sign[i] * z[mechanism.coordinate[i]];
+  std::vector<double> q(n);
+  std::vector<double> by_x(n * n);
+  static_cast<void>(mechanism.code->Evaluate(plugin::Quantity::kDrives,
+                                             {x, {}, mechanism.parameters, mechanism.modes},
+                                             {.values = q, .by_coordinates = by_x}));
+  const auto side = static_cast<Eigen::Index>(n);
+  return Eigen::Map<const Eigen::MatrixXd>(by_x.data(), side, side).determinant();
+}
+
+TEST(Dexterity, TellsTheSidesOfTypeTwoSingularitiesApart) {
+  std::mt19937 random(tests::Seed());
+  for (const std::string& name : tests::ShippedMachineFiles()) {
+    const Machine machine = tests::LoadMachine(name);
+    const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
+    for (std::size_t m = 0; m < judge->mechanisms().size(); ++m) {
+      const PoseJudge::Mechanism& mechanism = judge->mechanisms()[m];
+      DexterityBlock block(*judge, m, 100.0, true);
+      PoseBlock poses(*judge);
+      const std::vector<tests::NamedPose> list = tests::PosesOf(machine, 40, &random);
+      for (std::size_t k = 0; k < list.size(); ++k) {
+        for (Eigen::Index i = 0; i < list[k].z.size(); ++i)
+          poses.column(static_cast<std::size_t>(i))[k] = list[k].z[i];
+      }
+      poses.Judge(list.size());
+      block.Evaluate(poses, list.size());
+      const double home = Determinant(mechanism, machine.home());
+      for (std::size_t k = 0; k < list.size(); ++k) {
+        const double here = Determinant(mechanism, list[k].z);
+        if (!(std::abs(here) > 1e-6 * std::abs(home)) || !poses.Inside(k)) continue;
+        EXPECT_EQ(block.OnHomeSide(k), here * home > 0.0)
+            << name << ", " << list[k].kind << ", seed " << tests::Seed();
+      }
+    }
+  }
+}
+
 TEST(Dexterity, OfTheBiglideFollowsFromItsStruts) {
   // With struts at angles ±a to the rail, q̇i = ẋ ± tan(a) ẏ: J = [1 t; 1 -t], singular values √2
   // and √2 t; at 45° the condition is 1.
@@ -101,6 +143,24 @@ home = { X = 0, Y = 200 }
   EXPECT_NEAR(one.mean, two.mean, 1e-12 * one.mean);
   EXPECT_GT(one.global, 0.0);
   EXPECT_LT(one.global, 1.0);
+}
+
+TEST(DexterityOver, LeavesOutWhatLiesBeyondASingularityUnlessAsked) {
+  const Machine machine = tests::MachineFromText(R"(
+kompono = 1
+formula = "part O (XY):glides tool"
+[block.glides]
+module = "biglide"
+parameters = { L1 = 400, L2 = 400, width = 0 }
+home = { X = 0, Y = 200 }
+)");
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
+  // Both struts lie on the rail's line at Y = 0: as many poses on either side.
+  const Region region{
+      .z = machine.home(), .varied = {0, 1}, .lower = {-100, -350}, .upper = {100, 350}};
+  const std::array<std::uint64_t, 2> steps{20, 300};
+  EXPECT_EQ(DexterityOver(*judge, 0, 1.0, region, steps).poses, 20U * 150U);
+  EXPECT_EQ(DexterityOver(*judge, 0, 1.0, region, steps, {}, false).poses, 20U * 300U);
 }
 
 }  // namespace

@@ -186,5 +186,57 @@ TEST(PoseJudge, StrutsOfAHexapodCollideWhenThePlatformTurnsFarEnough) {
             Constraint::Kind::kClearance);
 }
 
+constexpr std::string_view kLimitedPods = R"(
+kompono = 1
+formula = "part O (XYZ):pods tool"
+units = { angle = "rad" }
+[block.pods]
+module = "tripod"
+parameters = { foot = [[0, 0, 0], [500, 0, 0], [0, 500, 0]] }
+home = { X = 0, Y = 0, Z = 400 }
+swing = { "foot1" = 0.5235987755982988 }
+)";
+
+TEST(PoseJudge, KeepsTheSwingsThatTheLayoutGivesUnlessToldNotTo) {
+  const Machine machine = tests::MachineFromText(std::string(kLimitedPods));
+  const double edge = 400.0 * std::tan(std::numbers::pi / 6.0);
+  const Eigen::Vector3d outside(edge + 0.01, 0.0, 400.0);
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
+  ASSERT_TRUE(judge) << RenderAll(judge.error(), {});
+  EXPECT_EQ(CauseAt(*judge, Eigen::Vector3d(edge - 0.01, 0.0, 400.0)), -1);
+  EXPECT_GE(CauseAt(*judge, outside), 0);
+  const std::vector<BrokenStrutLimit> broken = BrokenStrutLimits(*judge, outside);
+  ASSERT_EQ(broken.size(), 1U);
+  EXPECT_EQ(broken[0].constraint->name, "swing of pods.foot1");
+  EXPECT_NEAR(broken[0].value, std::atan2(outside[0], 400.0), 1e-12);
+  EXPECT_NEAR(broken[0].limit, std::numbers::pi / 6.0, 1e-12);
+  const auto free = PoseJudge::Make(machine, machine.nominal(), {.of_layout = false});
+  EXPECT_EQ(CauseAt(*free, outside), -1);
+  const auto wider = PoseJudge::Make(
+      machine, machine.nominal(), {.swings = {{.joint = "pods.foot1", .swing_rad = 1.0}}});
+  EXPECT_GE(CauseAt(*wider, outside), 0) << "the narrower of both counts";
+}
+
+TEST(PoseJudge, KeepsTheClearanceThatTheLayoutGives) {
+  // A platform turned by half a turn crosses its struts.
+  std::string text = tests::LoadMachine("hexapod_reference").layout().text;
+  const std::string module = "module = \"hexapod\"";
+  const std::size_t at = text.find(module);
+  ASSERT_NE(at, std::string::npos) << text;
+  text.insert(at, "strut_diameter = 40\nclearance = 5\n");
+  const Machine machine = tests::MachineFromText(text);
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
+  VectorXd z = machine.home();
+  EXPECT_TRUE(BrokenStrutLimits(*judge, z).empty());
+  z[5] = 2.9;
+  const std::vector<BrokenStrutLimit> broken = BrokenStrutLimits(*judge, z);
+  ASSERT_FALSE(broken.empty());
+  EXPECT_EQ(broken[0].limit, 45.0) << "between centre lines: twice the radius and the clearance";
+  const auto thinner =
+      PoseJudge::Make(machine, machine.nominal(), {.strut_radius_mm = 0.0, .clearance_mm = 1e-6});
+  ASSERT_TRUE(thinner);
+  EXPECT_LT(BrokenStrutLimits(*thinner, z).size(), broken.size()) << "told anew";
+}
+
 }  // namespace
 }  // namespace kompono::analysis

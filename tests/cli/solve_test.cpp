@@ -149,6 +149,24 @@ TEST_F(Solve, OutsideADrivesLimitsIsANegativeAnswerWithAllNumbers) {
   EXPECT_EQ(solved["limits"].size(), 1U);
 }
 
+TEST_F(Solve, OutsideTheSwingOfAJointIsANegativeAnswerToo) {
+  Write("pods.toml", R"(
+kompono = 1
+formula = "part O (XYZ):pods tool"
+[block.pods]
+module = "tripod"
+parameters = { foot = [[0, 0, 0], [500, 0, 0], [0, 500, 0]] }
+home = { X = 0, Y = 0, Z = 400 }
+swing = { "foot*" = 30 }
+strut_diameter = 60
+)");
+  const nlohmann::json solved = Json({"solve", "pods.toml", "--pose", "X=400,Y=0,Z=400"}, 1);
+  EXPECT_EQ(solved["status"], "outside limits");
+  EXPECT_EQ(solved["limits"][0],
+            "swing of pods.foot1 by 45.000000 deg lies above its limit 30 deg");
+  EXPECT_EQ(Json({"solve", "pods.toml", "--pose", "X=0,Y=0,Z=400"}, 0)["limits"].size(), 0U);
+}
+
 TEST_F(Solve, OutOfReachIsANegativeAnswerWithoutNumbers) {
   // Y = 1300 mm is farther from the rail than link 1 is long.
   const nlohmann::json solved = Json({"solve", lambda_, "--pose", "X=0,Y=-700,Z=0"}, 1);

@@ -174,6 +174,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped,
                                          "pyramid_by_angle",
                                          "triglide",
                                          "tripod_3rps",
+                                         "tripod_guided",
                                          "v100_lathe"),
                          [](const auto& instance) { return instance.param; });
 

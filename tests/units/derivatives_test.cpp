@@ -18,12 +18,12 @@ std::vector<std::string> Units() {
 class EveryUnit : public testing::TestWithParam<std::string> {
  protected:
   /// Its numbers a little off the defaults, so that no derivative vanishes by symmetry.
-  std::vector<double> Numbers() const {
+  [[nodiscard]] std::vector<double> Numbers() const {
     std::vector<double> out = bench_.parameters();
     for (const auto& parameter : bench_.description().parameters) {
       if (parameter.name == bench_.description().counted_by) continue;
       for (int i = 0; i < parameter.Numbers(); ++i)
-        out[static_cast<std::size_t>(parameter.offset + i)] +=
+        out[static_cast<std::size_t>(parameter.offset) + static_cast<std::size_t>(i)] +=
             (parameter.angle() ? 0.05 : 0.7) * (1.0 + 0.3 * i);
     }
     return out;

@@ -11,6 +11,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/LU>
+
 #include "kompono/analysis/dexterity.hpp"
 
 namespace kompono::analysis {
@@ -128,6 +130,40 @@ void SingularSquares(Table<N>& table, std::size_t drives, Number& least, Number&
   }
 }
 
+/// Sign of the determinant of J by Gauss's elimination. Without exchange of rows where no pivot is
+/// small beside its row, which two poses can share; else one after the other.
+template <std::size_t N>
+Number SignOfDeterminant(const Table<N>& table) {
+  std::array<std::array<Number, N>, N> a;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t k = 0; k < N; ++k) a[row][k] = table.j[k][row];
+  }
+  Number product = lanes::Broadcast(1.0);
+  Number weakest = lanes::Broadcast(1.0);
+  for (std::size_t p = 0; p < N; ++p) {
+    const Number pivot = a[p][p];
+    Number square = pivot * pivot;
+    for (std::size_t k = p + 1; k < N; ++k) square += a[p][k] * a[p][k];
+    const Number share = pivot * pivot / square;
+    weakest = lanes::Select(share < weakest, share, weakest);
+    product = lanes::Select(pivot < lanes::Broadcast(0.0), -product, product);
+    for (std::size_t row = p + 1; row < N; ++row) {
+      const Number factor = a[row][p] / pivot;
+      for (std::size_t k = p + 1; k < N; ++k) a[row][k] -= factor * a[p][k];
+    }
+  }
+  for (std::size_t lane = 0; lane < lanes::kCount; ++lane) {
+    if (weakest[lane] > 1e-8) continue;
+    Eigen::Matrix<double, static_cast<int>(N), static_cast<int>(N)> own;
+    for (std::size_t row = 0; row < N; ++row) {
+      for (std::size_t k = 0; k < N; ++k)
+        own(static_cast<int>(row), static_cast<int>(k)) = table.j[k][row][lane];
+    }
+    product[lane] = own.partialPivLu().determinant();
+  }
+  return product;
+}
+
 /// Whether the platform is the product of its letters' motions with translations first: then the
 /// twists follow from the angles alone.
 bool IsLetterProduct(const PoseJudge::Mechanism& mechanism, const VectorXd& home) {
@@ -172,6 +208,8 @@ struct DexterityBlock::Impl {
   std::vector<const double*> in;
   std::vector<double*> up_out, down_out, platform_out;
   std::vector<double> least, most;  ///< per pose of the block
+  double home_sign = 0.0;           ///< of det J; 0: sides are not looked at
+  std::vector<double> side;         ///< det J, or only its sign, per pose
 
   void Ask(plugin::Quantity quantity, std::size_t count, const std::vector<double*>& out) {
     const plugin::Status status =
@@ -255,6 +293,7 @@ struct DexterityBlock::Impl {
         for (std::size_t row = 0; row < kMost; ++row)
           table.twist[k][row] = lanes::Load(twist.data() + (k * kMost + row) * kChunk + i);
       }
+      if (home_sign != 0.0) lanes::Store(side.data() + first + i, SignOfDeterminant<N>(table));
       MakeTwistsUnit(table, drives);
       Number low{};
       Number high{};
@@ -288,7 +327,10 @@ struct DexterityBlock::Impl {
   }
 };
 
-DexterityBlock::DexterityBlock(const PoseJudge& judge, std::size_t mechanism, double length_mm)
+DexterityBlock::DexterityBlock(const PoseJudge& judge,
+                               std::size_t mechanism,
+                               double length_mm,
+                               bool with_sides)
     : impl_(std::make_unique<Impl>()) {
   Impl& own = *impl_;
   own.mechanism = &judge.mechanisms()[mechanism];
@@ -299,6 +341,11 @@ DexterityBlock::DexterityBlock(const PoseJudge& judge, std::size_t mechanism, do
     throw std::logic_error("DexterityBlock: expects 1 to 6 coordinates and at most 8 drives");
   const VectorXd home = LocalAt(*own.mechanism, judge.machine().home());
   own.letter_product = IsLetterProduct(*own.mechanism, home);
+  if (with_sides && own.n == own.drives) {
+    own.home_sign = ValuesAt(*own.mechanism, plugin::Quantity::kDrives, home, VectorXd(), true)
+                        .by_coordinates.determinant();
+    if (!std::isfinite(own.home_sign)) own.home_sign = 0.0;
+  }
   double size = 1.0;
   for (const Eigen::Vector3d& point : PointsAt(*own.mechanism, judge.machine().home()).point)
     size = std::max(size, point.norm());
@@ -329,6 +376,7 @@ DexterityBlock::DexterityBlock(const PoseJudge& judge, std::size_t mechanism, do
   }
   own.least.assign(PoseBlock::kCapacity, 0.0);
   own.most.assign(PoseBlock::kCapacity, 0.0);
+  own.side.assign(PoseBlock::kCapacity, 0.0);
 }
 DexterityBlock::DexterityBlock(DexterityBlock&&) noexcept = default;
 DexterityBlock& DexterityBlock::operator=(DexterityBlock&&) noexcept = default;
@@ -356,6 +404,10 @@ Dexterity DexterityBlock::At(std::size_t pose) const {
   return {.condition = std::sqrt(high / low),
           .weakest_force = std::sqrt(low),
           .slowest_velocity = 1.0 / std::sqrt(high)};
+}
+
+bool DexterityBlock::OnHomeSide(std::size_t pose) const {
+  return impl_->home_sign == 0.0 || impl_->side[pose] * impl_->home_sign > 0.0;
 }
 
 namespace {
@@ -403,7 +455,8 @@ DexterityField DexterityOver(const PoseJudge& judge,
                              double length_mm,
                              const Region& region,
                              std::span<const std::uint64_t> steps,
-                             const RunControl& control) {
+                             const RunControl& control,
+                             bool regular) {
   constexpr std::size_t kCapacity = PoseBlock::kCapacity;
   std::uint64_t poses = 1;
   for (const std::uint64_t step : steps) poses *= step;
@@ -411,7 +464,7 @@ DexterityField DexterityOver(const PoseJudge& judge,
   std::vector<DexterityBlock> dexterity;
   for (unsigned i = 0; i < control.Threads(); ++i) {
     blocks.emplace_back(judge);
-    dexterity.emplace_back(judge, mechanism, length_mm);
+    dexterity.emplace_back(judge, mechanism, length_mm, regular);
     FillHeld(region, blocks.back());
   }
   std::vector<Part> parts(blocks.size());
@@ -424,7 +477,8 @@ DexterityField DexterityOver(const PoseJudge& judge,
     if (blocks[worker].InsideCount() == 0) return;
     dexterity[worker].Evaluate(blocks[worker], count);
     for (std::size_t k = 0; k < count; ++k) {
-      if (blocks[worker].Inside(k)) parts[worker].Take(dexterity[worker].At(k), first + k);
+      if (blocks[worker].Inside(k) && dexterity[worker].OnHomeSide(k))
+        parts[worker].Take(dexterity[worker].At(k), first + k);
     }
   });
   DexterityField out;

@@ -2,6 +2,7 @@
 #include "kompono/analysis/pose_judge.hpp"
 
 #include "mechanism_points.hpp"
+#include "segments.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,24 +10,12 @@
 #include <limits>
 
 #include "kompono/diagnostics/suggestion.hpp"
+#include "kompono/layout/numbers.hpp"
 
 namespace kompono::analysis {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::max();
-
-/// `pattern` with * for any characters; a name without the rest means all below it.
-bool Matches(std::string_view pattern, std::string_view name) {
-  if (pattern.empty()) return name.empty() || name.front() == '.';
-  if (pattern.front() == '*') {
-    for (std::size_t i = 0; i <= name.size(); ++i) {
-      if (Matches(pattern.substr(1), name.substr(i))) return true;
-    }
-    return false;
-  }
-  return !name.empty() && pattern.front() == name.front() &&
-         Matches(pattern.substr(1), name.substr(1));
-}
 
 void SetRanges(const Machine& machine,
                const Machine::BlockView& view,
@@ -63,7 +52,9 @@ std::vector<PoseJudge::Joint> LimitedJoints(const MechanismPoints& at_home,
       const auto point = static_cast<std::size_t>(at);
       const std::string name = mechanism.block + "." + mechanism.description->points[point];
       for (std::size_t i = 0; i < limits.size(); ++i) {
-        if (!Matches(limits[i].joint, name) || at_home.body[point] == PointBody::kOther) continue;
+        if (!layout::MatchesPattern(limits[i].joint, name) ||
+            at_home.body[point] == PointBody::kOther)
+          continue;
         used[i] = true;
         PoseJudge::Joint joint{.at = at,
                                .other = other,
@@ -80,17 +71,30 @@ std::vector<PoseJudge::Joint> LimitedJoints(const MechanismPoints& at_home,
   return out;
 }
 
+/// Smallest distance between the struts' centre lines; none if it is not looked at.
+std::optional<double> SmallestDistance(const layout::Block& block, const Limits& limits) {
+  std::optional<double> radius = limits.strut_radius_mm;
+  std::optional<double> clearance = limits.clearance_mm;
+  if (limits.of_layout) {
+    if (!radius && block.strut_diameter) radius = 0.5 * *block.strut_diameter;
+    if (!clearance) clearance = block.clearance;
+  }
+  if (!radius && !clearance) return std::nullopt;
+  return 2.0 * radius.value_or(0.0) + clearance.value_or(0.0);
+}
+
 /// Pairs of struts that do not share a joint.
-std::vector<PoseJudge::StrutPair> Pairs(const MechanismPoints& at_home, const Limits& limits) {
+std::vector<PoseJudge::StrutPair> Pairs(const MechanismPoints& at_home,
+                                        const std::optional<double>& distance_mm) {
   std::vector<PoseJudge::StrutPair> out;
-  if (!limits.clearance_mm) return out;
+  if (!distance_mm) return out;
   const std::vector<StrutEnds>& struts = at_home.struts;
   for (std::size_t i = 0; i < struts.size(); ++i) {
     for (std::size_t j = i + 1; j < struts.size(); ++j) {
       if (at_home.ShareAJoint(struts[i], struts[j])) continue;
       out.push_back({.first = {struts[i].from, struts[i].to},
                      .second = {struts[j].from, struts[j].to},
-                     .distance_mm = 2.0 * limits.strut_radius_mm + *limits.clearance_mm});
+                     .distance_mm = *distance_mm});
     }
   }
   return out;
@@ -160,11 +164,17 @@ Parsed<PoseJudge> PoseJudge::Make(const Machine& machine,
   judge.machine_ = &machine;
   judge.theta_ = theta;
   judge.coordinate_count_ = machine.coordinates().size();
-  std::vector<bool> used(limits.swings.size(), false);
+  std::vector<SwingLimit> swings = limits.swings;
+  for (const layout::Block& block : machine.layout().blocks) {
+    for (const layout::JointLimit& joint : block.joints) {
+      if (limits.of_layout) swings.push_back({block.name + "." + joint.points, joint.swing});
+    }
+  }
+  std::vector<bool> used(swings.size(), false);
   std::vector<std::string> names;
   for (const Machine::BlockView& view : machine.blocks()) {
     Mechanism mechanism = DescribeMechanism(view, theta);
-    SetRanges(machine, view, theta, limits.drive_ranges, mechanism);
+    SetRanges(machine, view, theta, limits.of_layout, mechanism);
     const MechanismPoints at_home = PointsAt(mechanism, machine.home());
     for (const StrutEnds& strut : at_home.struts) {
       for (const int end : {strut.from, strut.to}) {
@@ -172,8 +182,8 @@ Parsed<PoseJudge> PoseJudge::Make(const Machine& machine,
                         mechanism.description->points[static_cast<std::size_t>(end)]);
       }
     }
-    mechanism.joints = LimitedJoints(at_home, mechanism, limits.swings, used);
-    mechanism.pairs = Pairs(at_home, limits);
+    mechanism.joints = LimitedJoints(at_home, mechanism, swings, used);
+    mechanism.pairs = Pairs(at_home, SmallestDistance(*view.block, limits));
     AddConstraints(mechanism,
                    machine,
                    view.first_drive,
@@ -181,9 +191,39 @@ Parsed<PoseJudge> PoseJudge::Make(const Machine& machine,
                    judge.constraints_);
     judge.mechanisms_.push_back(std::move(mechanism));
   }
-  Diagnostics problems = UnknownJoints(limits.swings, used, names);
+  Diagnostics problems = UnknownJoints(swings, used, names);
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return judge;
+}
+
+std::vector<BrokenStrutLimit> BrokenStrutLimits(const PoseJudge& judge, const VectorXd& z) {
+  using Kind = Constraint::Kind;
+  std::vector<MechanismPoints> at;
+  at.reserve(judge.mechanisms().size());
+  for (const PoseJudge::Mechanism& mechanism : judge.mechanisms())
+    at.push_back(PointsAt(mechanism, z));
+  std::vector<BrokenStrutLimit> out;
+  for (const Constraint& constraint : judge.constraints()) {
+    const auto m = static_cast<std::size_t>(constraint.mechanism);
+    const auto row = static_cast<std::size_t>(constraint.row);
+    const auto point = [&here = at[m]](int i) -> const Eigen::Vector3d& {
+      return here.point[static_cast<std::size_t>(i)];
+    };
+    if (constraint.kind == Kind::kSwing) {
+      const PoseJudge::Joint& joint = judge.mechanisms()[m].joints[row];
+      const Eigen::Vector3d axis =
+          joint.on_platform ? Eigen::Vector3d(at[m].platform.R * joint.axis) : joint.axis;
+      const Eigen::Vector3d strut = point(joint.other) - point(joint.at);
+      const double swing = std::atan2(axis.cross(strut).norm(), axis.dot(strut));
+      if (swing > joint.swing_rad) out.push_back({&constraint, swing, joint.swing_rad});
+    } else if (constraint.kind == Kind::kClearance) {
+      const PoseJudge::StrutPair& pair = judge.mechanisms()[m].pairs[row];
+      const double distance = SegmentDistance(
+          point(pair.first[0]), point(pair.first[1]), point(pair.second[0]), point(pair.second[1]));
+      if (distance < pair.distance_mm) out.push_back({&constraint, distance, pair.distance_mm});
+    }
+  }
+  return out;
 }
 
 }  // namespace kompono::analysis

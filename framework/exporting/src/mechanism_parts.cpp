@@ -8,6 +8,8 @@
 #include <optional>
 #include <span>
 
+#include <Eigen/SVD>
+
 namespace kompono::exporting {
 namespace {
 
@@ -74,8 +76,10 @@ class Study {
       if (link.kind != "strut") continue;
       if (auto problem = AddStrut(link, out)) return Problem(*problem);
     }
-    out.free_platform = shape_.coordinates == 6 || !PlatformFollowsItsLetters();
-    if (shape_.coordinates < 6 && out.free_platform && !HingesHold(out)) {
+    if (shape_.coordinates < 6 && PlatformFollowsItsLetters()) return out;
+    if (shape_.coordinates < 6 && (out.tube = FindTube(out.points))) return out;
+    out.free_platform = true;
+    if (shape_.coordinates < 6 && !HingesHold(out)) {
       return Problem("its platform has motions besides those of its letters");
     }
     return out;
@@ -127,6 +131,78 @@ class Study {
       return (X.p - sample.X_BP.p).norm() <= kStill * size_ &&
              (X.R - sample.X_BP.R).norm() <= kStill;
     });
+  }
+
+  /// A base point that the description links to the platform, and through which a straight line of
+  /// the platform runs wherever it goes, while all its turns are about one axis of the base and one
+  /// of its own.
+  [[nodiscard]] std::optional<TubePart> FindTube(const std::vector<PointPart>& points) const {
+    if (shape_.coordinates != 3) return std::nullopt;  // two swings and one slide
+    for (const plugin::LinkDescription& link : view_.description->links) {
+      const int from = Number(link.from);
+      const int to = Number(link.to);
+      const auto on_base = [&](int i) {
+        return points[static_cast<std::size_t>(i)].carrier == PointPart::Carrier::kBase;
+      };
+      if (link.kind != "platform" || on_base(from) == on_base(to)) continue;
+      TubePart tube{.collar = on_base(from) ? from : to};
+      Eigen::MatrixX3d slides(samples_.size(), 3);
+      Eigen::MatrixX3d normals_B(samples_.size(), 3);
+      Eigen::MatrixX3d normals_P(samples_.size(), 3);
+      for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        slides.row(row) =
+            (InPlatform(samples_[i], tube.collar) - InPlatform(samples_[0], tube.collar)) / size_;
+        const Vector3<double> normal = NeverTurnsAbout(samples_[i]);
+        normals_B.row(row) = normal;
+        normals_P.row(row) = samples_[i].X_BP.R.transpose() * normal;
+      }
+      const auto along = OnlyDirection(slides);
+      const auto first = SquareToAll(normals_B);
+      const auto second = SquareToAll(normals_P);
+      if (!along || !first || !second) continue;
+      tube.along_P = *along;
+      tube.first_B = *first;
+      tube.second_P = *second;
+      return tube;
+    }
+    return std::nullopt;
+  }
+
+  /// The axis in the base about which no small motion of the platform turns it; zero if it may turn
+  /// about all, or about one or none.
+  [[nodiscard]] Vector3<double> NeverTurnsAbout(const Sample& sample) const {
+    VectorXd platform(12);
+    RowMajor by_x(12, shape_.coordinates);
+    static_cast<void>(
+        view_.code->Evaluate(Quantity::kPlatform,
+                             {Span(sample.x), {}, Span(theta_), view_.modes},
+                             {.values = Span(platform), .by_coordinates = Span(by_x)}));
+    Eigen::Matrix3Xd turns(3, shape_.coordinates);
+    for (Eigen::Index i = 0; i < by_x.cols(); ++i) {
+      const VectorXd rate = by_x.col(i);
+      const Matrix3<double> spin = Pose<double>::Read(std::span<const double>(rate.data(), 12)).R *
+                                   sample.X_BP.R.transpose();
+      turns.col(i) = Vector3<double>(spin(2, 1), spin(0, 2), spin(1, 0)) * size_;
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(turns, Eigen::ComputeFullU);
+    const VectorXd& gain = svd.singularValues();
+    const bool about_two = gain.size() == 3 && gain[1] > 1e-3 && gain[2] <= kStill;
+    return about_two ? Vector3<double>(svd.matrixU().col(2)) : Vector3<double>::Zero();
+  }
+
+  /// The one direction of the rows; none if they are nothing or differ.
+  static std::optional<Vector3<double>> OnlyDirection(const Eigen::MatrixX3d& rows) {
+    const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(rows, Eigen::ComputeFullV);
+    if (svd.singularValues()[0] <= 1e-6 || svd.singularValues()[1] > kStill) return std::nullopt;
+    return Vector3<double>(svd.matrixV().col(0));
+  }
+
+  /// The one direction that is square to all rows; none if there is none or more.
+  static std::optional<Vector3<double>> SquareToAll(const Eigen::MatrixX3d& rows) {
+    const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(rows, Eigen::ComputeFullV);
+    if (svd.singularValues()[1] <= 1e-6 || svd.singularValues()[2] > kStill) return std::nullopt;
+    return Vector3<double>(svd.matrixV().col(2));
   }
 
   /// Finds the struts that stay in a plane, as hinges on the base would make them; true if these

@@ -39,6 +39,15 @@ struct CrankPart {
   int drive = 0;
 };
 
+/// A tube of the platform in a cardan joint on the base: it swings about two axes that cross in the
+/// joint, slides through it, and lets the platform turn about no third axis.
+struct TubePart {
+  int collar = 0;            ///< the base point in which it swings
+  Vector3<double> first_B;   ///< the cardan's axis on the base
+  Vector3<double> second_P;  ///< and the one on the platform's side
+  Vector3<double> along_P;   ///< the tube's direction, in the platform
+};
+
 struct MechanismParts {
   const kinematics::Machine::BlockView* view = nullptr;
   Pose<double> X_BP;          ///< platform at home
@@ -46,6 +55,7 @@ struct MechanismParts {
   std::vector<PointPart> points;
   std::vector<StrutPart> struts;
   std::vector<CrankPart> cranks;
+  std::optional<TubePart> tube;
   bool free_platform = false;  ///< all six freedoms, the struts alone hold it
 };
 

@@ -246,6 +246,10 @@ class Writer {
       out += fmt::format("      <joint name=\"{}.platform\" type=\"free\"/>\n", block_);
       return;
     }
+    if (parts_.tube) {
+      Swings(*parts_.tube, out);
+      return;
+    }
     Matrix3<double> R_so_far = Matrix3<double>::Identity();
     for (std::size_t i = 0; i < letters.size(); ++i) {
       const double at = parts_.x[static_cast<Eigen::Index>(i)];
@@ -260,6 +264,24 @@ class Writer {
                          at);
       if (turns) R_so_far = R_so_far * LetterMotion(letters[i], at).R;
     }
+  }
+
+  /// The tube of the platform swings in its collar and slides through it.
+  void Swings(const TubePart& tube, std::string& out) const {
+    const Vector3<double> collar = parts_.X_BP.Inverse() * Point(tube.collar).p_B;
+    const auto joint = [&](std::string_view name, const char* type, const Vector3<double>& axis) {
+      out += fmt::format("      <joint name=\"{}.{}.{}\" type=\"{}\" pos=\"{}\" axis=\"{}\"/>\n",
+                         block_,
+                         Name(tube.collar),
+                         name,
+                         type,
+                         Numbers(collar),
+                         Numbers(axis));
+    };
+    joint("first", "hinge", parts_.X_BP.R.transpose() * tube.first_B);
+    joint("second", "hinge", tube.second_P);
+    joint("slide", "slide", tube.along_P);
+    out += fmt::format("      {}\n", Capsule(collar));
   }
 
   const MechanismParts& parts_;

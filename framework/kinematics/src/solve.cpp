@@ -294,50 +294,149 @@ Solution Machine::Forward(const VectorXd& readings,
   return out;
 }
 
+namespace {
+
+/// A pose that is asked for; z is sought.
+struct PoseProblem {
+  const Machine& machine;
+  const Machine::Impl& impl;
+  const VectorXd& theta;
+  Rows rows;
+  PoseNumbers wanted;
+  layout::RotationOrder order = layout::RotationOrder::kXYZ;
+  VectorXd column_scale;
+  double size = 1.0;  ///< mm; what errors are small against
+
+  [[nodiscard]] Error At(const VectorXd& z) const {
+    return ErrorAt(impl, rows, wanted, order, z, theta);
+  }
+};
+
+/// Damped Newton from z; the error where it ends.
+Error Converge(const PoseProblem& problem, VectorXd& z, int& iterations) {
+  Error here = problem.At(z);
+  for (; iterations < kIterations && here.weighted.allFinite(); ++iterations) {
+    if (here.largest <= 1e-15 * problem.size) break;
+    const VectorXd step = StepOf(here, problem.column_scale);
+    double fraction = 1.0;
+    bool better = false;
+    for (int halving = 0; halving < 16 && !better; ++halving, fraction *= 0.5) {
+      const VectorXd trial = z + fraction * step;
+      Error there = problem.At(trial);
+      better = there.weighted.allFinite() && there.weighted.norm() < here.weighted.norm();
+      if (better) {
+        z = trial;
+        here = std::move(there);
+      } else if (here.largest <= 1e-12 * problem.size) {
+        break;  // nothing but rounding is left
+      }
+    }
+    if (!better) break;
+  }
+  return here;
+}
+
+bool IsMet(const PoseProblem& problem, const Error& error) {
+  return error.largest <= 1e-10 * problem.size;
+}
+
+/// How far z is from what drives reach and from the ranges of drives and coordinates, in parts of
+/// the size and radians; 0 if all is kept.
+double Violation(const PoseProblem& problem, const VectorXd& z) {
+  VectorXd readings;
+  VectorXd reach;
+  problem.machine.DrivesOf(z, problem.theta, &readings, &reach);
+  const auto beyond = [&](const auto& of, double value) {
+    const double unit = of.rotary ? 1.0 : problem.size;
+    return (of.lower ? std::max(0.0, *of.lower - value) / unit : 0.0) +
+           (of.upper ? std::max(0.0, value - *of.upper) / unit : 0.0);
+  };
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    if (reach[i] < 0.0) {
+      sum += std::sqrt(-reach[i]) / problem.size;
+    } else if (!std::isfinite(readings[i])) {
+      sum += 1.0;
+    } else {
+      sum += beyond(problem.impl.drives[static_cast<std::size_t>(i)], readings[i]);
+    }
+  }
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    sum += beyond(problem.impl.coordinates[static_cast<std::size_t>(i)], z[i]);
+  return sum;
+}
+
+/// Directions in which the coordinates move without the pose: the columns, in scaled coordinates.
+MatrixXd FreeDirections(const PoseProblem& problem, const Error& error) {
+  const MatrixXd J = error.J * problem.column_scale.asDiagonal();
+  const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
+  const VectorXd& gain = svd.singularValues();
+  Eigen::Index rank = 0;
+  while (rank < gain.size() && gain[rank] > 1e-9 * gain[0]) ++rank;
+  return svd.matrixV().rightCols(J.cols() - rank);
+}
+
+/// Where coordinates are left over, several settings give the pose: from one that breaks a limit
+/// this looks for one that keeps all, along the free directions with steps that grow and shrink.
+void MoveWithinLimits(const PoseProblem& problem, VectorXd& z, Error& error) {
+  double violation = Violation(problem, z);
+  double step = 0.1;  // of the size, or rad
+  for (int trial = 0; trial < 100 && violation > 0.0 && step > 1e-4;) {
+    const MatrixXd free = FreeDirections(problem, error);
+    bool better = false;
+    for (Eigen::Index k = 0; k < 2 * free.cols() && !better; ++k, ++trial) {
+      const VectorXd along = problem.column_scale.cwiseProduct(free.col(k / 2));
+      double longest = 0.0;
+      for (Eigen::Index i = 0; i < along.size(); ++i) {
+        const bool turns = problem.impl.coordinates[static_cast<std::size_t>(i)].rotary;
+        longest = std::max(longest, std::abs(along[i]) / (turns ? 1.0 : problem.size));
+      }
+      VectorXd moved = z + (k % 2 == 0 ? step : -step) / longest * along;
+      int iterations = 0;
+      Error there = Converge(problem, moved, iterations);
+      const double left = IsMet(problem, there) ? Violation(problem, moved) : violation;
+      better = left < violation;
+      if (!better) continue;
+      z = moved;
+      error = std::move(there);
+      violation = left;
+    }
+    if (free.cols() == 0) return;
+    step = better ? std::min(0.4, 1.5 * step) : 0.5 * step;
+  }
+}
+
+}  // namespace
+
 Solution Machine::Inverse(const PoseTarget& target,
                           const VectorXd& theta,
                           const VectorXd& start) const {
   const Impl& impl = *impl_;
-  const VectorXd column_scale = ColumnScale(impl);
   Solution out;
   out.coordinates = start;
+  out.status = SolveStatus::kConverged;
   PoseDerivatives at_start;
   const Pose<double> X_start = ChainPose(impl, start, theta, &at_start);
-  const Rows rows = ChooseRows(
-      target, NumbersJacobian(X_start, at_start.by_coordinates, target.order), column_scale);
-  PoseNumbers wanted = NumbersFromPose(X_start, target.order);
+  PoseProblem problem{.machine = *this,
+                      .impl = impl,
+                      .theta = theta,
+                      .wanted = NumbersFromPose(X_start, target.order),
+                      .order = target.order,
+                      .column_scale = ColumnScale(impl)};
+  problem.rows = ChooseRows(target,
+                            NumbersJacobian(X_start, at_start.by_coordinates, target.order),
+                            problem.column_scale);
   for (std::size_t k = 0; k < 6; ++k)
-    wanted.value[k] = target.component[k].value_or(wanted.value[k]);
-  const double size = std::max(
-      {1.0, std::abs(wanted.value[0]), std::abs(wanted.value[1]), std::abs(wanted.value[2])});
-  if (rows.components.empty()) {
-    out.status = SolveStatus::kConverged;
-  } else {
-    Error here = ErrorAt(impl, rows, wanted, target.order, out.coordinates, theta);
-    for (; out.iterations < kIterations && here.weighted.allFinite(); ++out.iterations) {
-      if (here.largest <= 1e-15 * size) break;
-      const VectorXd step = StepOf(here, column_scale);
-      double fraction = 1.0;
-      bool better = false;
-      for (int halving = 0; halving < 16 && !better; ++halving, fraction *= 0.5) {
-        const VectorXd trial = out.coordinates + fraction * step;
-        Error there = ErrorAt(impl, rows, wanted, target.order, trial, theta);
-        better = there.weighted.allFinite() && there.weighted.norm() < here.weighted.norm();
-        if (better) {
-          out.coordinates = trial;
-          here = std::move(there);
-        } else if (here.largest <= 1e-12 * size) {
-          break;  // nothing but rounding is left
-        }
-      }
-      if (!better) break;
-    }
+    problem.wanted.value[k] = target.component[k].value_or(problem.wanted.value[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    problem.size = std::max(problem.size, std::abs(problem.wanted.value[k]));
+  if (!problem.rows.components.empty()) {
+    Error here = Converge(problem, out.coordinates, out.iterations);
+    if (IsMet(problem, here)) MoveWithinLimits(problem, out.coordinates, here);
     out.residual = here.largest;
-    out.status =
-        here.largest <= 1e-10 * size ? SolveStatus::kConverged : SolveStatus::kNoConvergence;
-    if (!out.ok()) {
-      const bool too_many = RankOf(here.J, column_scale) < here.J.rows();
-      if (too_many) out.status = SolveStatus::kOverdetermined;
+    if (!IsMet(problem, here)) {
+      const bool too_many = RankOf(here.J, problem.column_scale) < here.J.rows();
+      out.status = too_many ? SolveStatus::kOverdetermined : SolveStatus::kNoConvergence;
       out.message = too_many
                         ? OverdeterminedMessage(impl, target, here.largest, false)
                         : fmt::format("the pose could not be reached: {:.6g} mm or rad are left",

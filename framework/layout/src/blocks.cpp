@@ -71,6 +71,7 @@ BlockDraft LayoutReader::ReadBlock(std::string_view name, const toml::table& tab
     draft.block.parameters = std::move(*parameters);
   ReadModes(draft);
   ReadBlockDrives(draft);
+  ReadStrutLimits(draft);
   return draft;
 }
 
@@ -111,6 +112,38 @@ void LayoutReader::ReadBlockDrives(BlockDraft& draft) {
                       complaints_.Span(key.source()),
                       fmt::format("'{}' has no drive '{}'", draft.module->id, key.str()),
                       DidYouMean(key.str(), names));
+  }
+}
+
+void LayoutReader::ReadStrutLimits(BlockDraft& draft) {
+  const auto length = [&](std::string_view key) -> std::optional<double> {
+    const auto value = NumberAt(*draft.table, key);
+    return value ? std::optional(*value * units_.length) : std::nullopt;
+  };
+  draft.block.strut_diameter = length("strut_diameter");
+  draft.block.clearance = length("clearance");
+  const toml::table* given = TableAt(*draft.table, "swing");
+  if (given == nullptr) return;
+  std::vector<std::string> joints;
+  for (const plugin::LinkDescription& link : draft.module->links) {
+    if (link.kind != "strut") continue;
+    for (const std::string& end : {link.from, link.to}) {
+      if (std::find(joints.begin(), joints.end(), end) == joints.end()) joints.push_back(end);
+    }
+  }
+  for (const auto& [key, node] : *given) {
+    const bool known = std::any_of(joints.begin(), joints.end(), [&key = key](const auto& joint) {
+      return MatchesPattern(key.str(), joint);
+    });
+    if (!known) {
+      complaints_.Error(
+          codes::kUnknownJoint,
+          complaints_.Span(key.source()),
+          fmt::format("no strut of '{}' has a joint '{}'", draft.module->id, key.str()),
+          joints.empty() ? "the module has no struts" : DidYouMean(key.str(), joints, 12));
+    } else if (const auto swing = NumberOf(&node)) {
+      draft.block.joints.push_back({std::string(key.str()), *swing * units_.angle});
+    }
   }
 }
 

@@ -58,6 +58,7 @@ class LayoutReader {
   /// The module that stands in `table`, of the wanted kind; null after a complaint or without one.
   [[nodiscard]] const plugin::ModuleDescription* ReadModule(const toml::table& table,
                                                             plugin::ModuleKind kind);
+  void ReadStrutLimits(BlockDraft& draft);
   void ConnectBlocks();
   void ConnectNamed(const std::string& block_name, const std::vector<formula::Axis>& axes);
   void ConnectUnnamed(formula::Group& group);

@@ -51,7 +51,12 @@ struct DexterityDetails {
 /// registers. Nothing is allocated after construction.
 class DexterityBlock {
  public:
-  DexterityBlock(const PoseJudge& judge, std::size_t mechanism, double length_mm);
+  /// With sides, poses are told apart by the sign of det J, which changes where a type 2
+  /// singularity is crossed within reach; only for as many drives as coordinates.
+  DexterityBlock(const PoseJudge& judge,
+                 std::size_t mechanism,
+                 double length_mm,
+                 bool with_sides = false);
   DexterityBlock(const DexterityBlock&) = delete;
   DexterityBlock& operator=(const DexterityBlock&) = delete;
   DexterityBlock(DexterityBlock&&) noexcept;
@@ -62,13 +67,16 @@ class DexterityBlock {
   void Evaluate(const PoseBlock& poses, std::size_t count);
   /// Squares of the smallest and the largest singular value.
   [[nodiscard]] Dexterity At(std::size_t pose) const;
+  /// True wherever sides are not looked at.
+  [[nodiscard]] bool OnHomeSide(std::size_t pose) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// What a region is like on a grid: only poses inside count.
+/// What a region is like on a grid: only poses inside count, and of these, unless `regular` is
+/// false, only those on home's side of type 2 singularities.
 struct DexterityField {
   std::uint64_t poses = 0;                     ///< inside
   double best = 0.0, worst = 0.0, mean = 0.0;  ///< condition; mean of its inverse is `global`
@@ -82,7 +90,8 @@ struct DexterityField {
                                            double length_mm,
                                            const Region& region,
                                            std::span<const std::uint64_t> steps,
-                                           const RunControl& control = {});
+                                           const RunControl& control = {},
+                                           bool regular = true);
 
 }  // namespace kompono::analysis
 

@@ -27,11 +27,14 @@ struct SwingLimit {
 
 /// What a pose must keep. Reach always counts.
 struct Limits {
-  bool drive_ranges = true;
-  std::vector<SwingLimit> swings;
-  /// Struts are capsules of this radius; those that share a joint may touch.
-  double strut_radius_mm = 0.0;
-  std::optional<double> clearance_mm;  ///< between the capsules' surfaces; none: not looked at
+  bool of_layout = true;  ///< ranges of drives, swings and clearances that the layout gives
+  std::vector<SwingLimit> swings;  ///< besides those of the layout
+  /// Struts are capsules of this radius; those that share a joint may touch. None: as the layout
+  /// says, 0 if it does not.
+  std::optional<double> strut_radius_mm;
+  /// Between the capsules' surfaces. None: as the layout says, 0 if only a radius is given, and not
+  /// looked at if nothing is.
+  std::optional<double> clearance_mm;
 };
 
 /// One thing that can end the zone.
@@ -177,6 +180,15 @@ void FillGrid(const Region& region,
 
 /// One pose. Index of the first constraint it breaks, -1 if none.
 [[nodiscard]] int CauseAt(const PoseJudge& judge, const VectorXd& z);
+
+/// A swing above its limit, or centre lines of struts nearer to each other than they may.
+struct BrokenStrutLimit {
+  const Constraint* constraint = nullptr;
+  double value = 0.0, limit = 0.0;  ///< rad for a swing, mm for a clearance
+};
+/// All that one pose breaks of swings and clearances.
+[[nodiscard]] std::vector<BrokenStrutLimit> BrokenStrutLimits(const PoseJudge& judge,
+                                                              const VectorXd& z);
 
 }  // namespace kompono::analysis
 

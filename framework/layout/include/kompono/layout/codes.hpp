@@ -52,6 +52,7 @@ inline constexpr CodeTitle kCannotWrite{"E0332", "number that cannot be written 
 inline constexpr CodeTitle kCannotRead{"E0333", "file that cannot be read"};
 inline constexpr CodeTitle kUnknownLetter{"E0334", "not a letter of the block"};
 inline constexpr CodeTitle kNameTaken{"E0335", "block with the name of an axis or an end"};
+inline constexpr CodeTitle kUnknownJoint{"E0336", "not a joint of the module's struts"};
 
 inline constexpr CodeTitle kHomeOutside{"W0301", "home outside its range"};
 inline constexpr CodeTitle kNoSpindle{"W0302", "'positioning' of an axis that is no spindle"};

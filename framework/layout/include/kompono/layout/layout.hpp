@@ -37,6 +37,13 @@ struct Drive {
   int sign = 1;                        ///< -1: the reading counts against the drive coordinate
 };
 
+/// How far a strut may swing in its joint, away from its direction at home as the body that carries
+/// the joint sees it.
+struct JointLimit {
+  std::string points;  ///< pattern of skeleton points that end struts, "base*"
+  double swing = 0.0;  ///< rad
+};
+
 /// One parallel mechanism: what ":name" in the formula means.
 struct Block {
   std::string name;
@@ -57,6 +64,9 @@ struct Block {
       home;  ///< per local coordinate, in formula letters' sense; mm, rad
   std::vector<std::optional<double>> lower;  ///< optional limits of the coordinates, likewise
   std::vector<std::optional<double>> upper;
+  std::vector<JointLimit> joints;
+  std::optional<double> strut_diameter;  ///< mm; struts are capsules
+  std::optional<double> clearance;       ///< mm, between struts that share no joint
 };
 
 /// A plain axis of the formula.
