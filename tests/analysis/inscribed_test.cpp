@@ -137,5 +137,25 @@ range = [-1000, 300]
   EXPECT_THAT(svg, testing::EndsWith("</svg>\n"));
 }
 
+TEST(Inscribed, ABoxThatTouchesAllEndsIsFoundWhole) {
+  // Index V100: its zone is the box 250 x 250 x 150, no more and no less.
+  const Machine machine = tests::LoadMachine("v100_lathe");
+  const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
+  const auto region = RegionOf(machine, {}, machine.home());
+  const auto function = ZoneFunction::Make(*judge, *region, true);
+  ASSERT_TRUE(function);
+  const WorkZone zone = ComputeZone(*function, {});
+  const std::vector<double> wanted{250.0, 250.0, 150.0};
+  const InscribedBody box = LargestInside(*function, zone, BodyShape::kBox, wanted);
+  EXPECT_EQ(box.size, wanted);
+  EXPECT_NEAR(box.content, 250.0 * 250.0 * 150.0, 1e-6);
+  const InscribedBody cylinder = LargestInside(*function, zone, BodyShape::kCylinder, wanted);
+  EXPECT_EQ(cylinder.size, wanted);
+  const std::vector<double> larger{250.5, 250.5, 150.3};
+  const InscribedBody less = LargestInside(*function, zone, BodyShape::kBox, larger);
+  ASSERT_TRUE(less.found);
+  EXPECT_LE(less.size[0], 250.0);
+}
+
 }  // namespace
 }  // namespace kompono::analysis

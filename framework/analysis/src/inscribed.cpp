@@ -211,6 +211,19 @@ bool MeetsCylinder(const Point& lower,
   return square <= radius * radius;
 }
 
+/// Where the body lies within the region's ends, as near to `centre` as it can.
+std::vector<double> WithinEnds(const Region& region,
+                               const std::vector<double>& centre,
+                               const std::vector<double>& size) {
+  std::vector<double> out = centre;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double lowest = region.lower[i] + 0.5 * size[i];
+    const double highest = region.upper[i] - 0.5 * size[i];
+    out[i] = lowest < highest ? std::clamp(out[i], lowest, highest) : 0.5 * (lowest + highest);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool ProvenInside(const ZoneFunction& function,
@@ -286,20 +299,22 @@ InscribedBody LargestInside(const ZoneFunction& function,
   scale = climb.Largest(centre, scale, limit);
   climb.Improve(centre, scale, step, limit);
   out.centre.assign(centre.begin(), centre.begin() + static_cast<std::ptrdiff_t>(n));
-  // Samples can miss a dent; the proof does not. A little smaller until it is given.
+  // The search ends just below what touches a limit: the very extents asked for come first.
   double shrink = 2e-4;
-  while (shrink < 0.9 && !control.Stopped()) {
-    out.size.clear();
-    out.content = 1.0;
-    for (const double p : proportions) {
-      out.size.push_back(p * scale * (1.0 - shrink));
-      out.content *= out.size.back();
-    }
-    if (shape == BodyShape::kCylinder && n >= 2) out.content *= std::numbers::pi / 4.0;
-    out.found = ProvenInside(function, shape, out.centre, out.size, control);
-    if (out.found) break;
-    shrink *= 2.0;
+  if (scale > 0.99 && scale * (1.0 - shrink) < 1.0) {
+    out.size = proportions;
+    const std::vector<double> touching = WithinEnds(function.region(), out.centre, out.size);
+    out.found = ProvenInside(function, shape, touching, out.size, control);
+    if (out.found) out.centre = touching;
   }
+  // Samples can miss a dent; the proof does not. A little smaller until it is given.
+  for (; !out.found && shrink < 0.9 && !control.Stopped(); shrink *= 2.0) {
+    out.size.clear();
+    for (const double p : proportions) out.size.push_back(p * scale * (1.0 - shrink));
+    out.found = ProvenInside(function, shape, out.centre, out.size, control);
+  }
+  out.content = shape == BodyShape::kCylinder && n >= 2 ? std::numbers::pi / 4.0 : 1.0;
+  for (const double extent : out.size) out.content *= extent;
   return out;
 }
 

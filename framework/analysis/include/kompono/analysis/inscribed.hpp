@@ -26,7 +26,8 @@ struct InscribedBody {
 };
 
 /// `proportions`: extents per varied coordinate; for a cylinder {diameter, diameter, height}, or
-/// {diameter, diameter} for a disc. @throws std::logic_error for another number of them, or one
+/// {diameter, diameter} for a disc. If a body of exactly these extents is the largest, touching the
+/// zone's limits, it is found as such. @throws std::logic_error for another number of them, or one
 /// that is not above 0.
 [[nodiscard]] InscribedBody LargestInside(const ZoneFunction& function,
                                           const WorkZone& zone,
