@@ -367,7 +367,7 @@ void AddLimits(CLI::App& command, Options& options) {
   command.add_option("--clearance", options.clearance, "Struts keep this distance, mm")
       ->type_name("MM")
       ->check(CLI::NonNegativeNumber);
-  command.add_flag("--no-ranges", options.no_ranges, "Reach only, without the drives' ranges");
+  command.add_flag("--no-ranges", options.no_ranges, "Reach only, without what the layout limits");
   command.add_flag(
       "--any-side", options.any_side, "Beyond type 2 singularities too, not only on home's side");
   command

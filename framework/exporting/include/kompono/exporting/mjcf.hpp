@@ -20,8 +20,8 @@ namespace kompono::exporting {
 /// drive), one that is fixed to the platform is on it, and one that circles round a point of the
 /// platform is on a ring. The platform has the joints of its letters, named "block.X" and so on, or
 /// all six freedoms where it has six letters ("block.platform"), or those of a tube that swings and
-/// slides in a cardan joint ("block.guide.first", ".second", ".slide"); drives are named like those of the
-/// machine. Struts may turn about themselves, but one that ends on a ring is pinned to it.
+/// slides in a cardan joint ("block.guide.first", ".second", ".slide"); drives are named like those
+/// of the machine. Struts may turn about themselves, but one that ends on a ring is pinned to it.
 ///
 /// E0712: a mechanism that cannot be told apart that way (struts that branch, a platform with
 /// motions of its own).
