@@ -38,7 +38,16 @@ StrutNumbers NumbersOf(const std::string& from,
   return out;
 }
 
-void AddDistances(const Machine::SkeletonView& skeleton, double radius, GeometryNumbers& out) {
+/// Of the strut that begins at a point, "struts.base1".
+double RadiusOf(const Machine& machine, const std::string& point) {
+  const layout::Block* block = machine.layout().FindBlock(point.substr(0, point.find('.')));
+  return block == nullptr ? 0.0 : 0.5 * block->strut_diameter.value_or(0.0);
+}
+
+template <class Radius>
+void AddDistances(const Machine::SkeletonView& skeleton,
+                  const Radius& radius,
+                  GeometryNumbers& out) {
   for (std::size_t i = 0; i < out.struts.size(); ++i) {
     const Eigen::Vector3d& a0 = *Find(skeleton, out.struts[i].from);
     const Eigen::Vector3d& a1 = *Find(skeleton, out.struts[i].to);
@@ -53,7 +62,8 @@ void AddDistances(const Machine::SkeletonView& skeleton, double radius, Geometry
       out.distances.push_back({.first = i,
                                .second = j,
                                .centre_lines_mm = meeting.distance,
-                               .clearance_mm = meeting.distance - 2.0 * radius,
+                               .clearance_mm = meeting.distance - radius(out.struts[i].from) -
+                                               radius(out.struts[j].from),
                                .on_first = a0 + meeting.along_a * (a1 - a0),
                                .on_second = b0 + meeting.along_b * (b1 - b0)});
     }
@@ -115,7 +125,7 @@ std::optional<Place> ParsePlace(const std::string& text) {
 GeometryNumbers GeometryAt(const Machine& machine,
                            const VectorXd& z,
                            const VectorXd& theta,
-                           double strut_radius_mm) {
+                           const std::optional<double>& strut_radius_mm) {
   const Machine::SkeletonView skeleton = machine.Skeleton(z, theta);
   GeometryNumbers out{.points = skeleton.points};
   for (const Machine::SkeletonLink& link : skeleton.links) {
@@ -124,7 +134,10 @@ GeometryNumbers GeometryAt(const Machine& machine,
     const Eigen::Vector3d* b = Find(skeleton, link.to);
     if (a != nullptr && b != nullptr) out.struts.push_back(NumbersOf(link.from, link.to, *a, *b));
   }
-  AddDistances(skeleton, strut_radius_mm, out);
+  const auto radius = [&](const std::string& point) {
+    return strut_radius_mm ? *strut_radius_mm : RadiusOf(machine, point);
+  };
+  AddDistances(skeleton, radius, out);
   AddAngles(skeleton, out);
   return out;
 }

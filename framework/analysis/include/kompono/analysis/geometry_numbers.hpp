@@ -2,6 +2,7 @@
 #ifndef KOMPONO_ANALYSIS_GEOMETRY_NUMBERS_HPP_
 #define KOMPONO_ANALYSIS_GEOMETRY_NUMBERS_HPP_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,10 +45,11 @@ struct GeometryNumbers {
   std::vector<StrutDistance> distances;  ///< of struts that share no joint, nearest first
   std::vector<LinkAngle> angles;
 };
+/// Struts have the radius given, or else half the diameter that the layout gives, or 0.
 [[nodiscard]] GeometryNumbers GeometryAt(const kinematics::Machine& machine,
                                          const kinematics::VectorXd& z,
                                          const kinematics::VectorXd& theta,
-                                         double strut_radius_mm = 0.0);
+                                         const std::optional<double>& strut_radius_mm = {});
 
 /// Where a point is at each pose. `point` is a skeleton point, "struts.joint1", or a place on a
 /// link between two of them, "struts.base1:struts.joint1:0.25" for a quarter of the way. E0726: no
