@@ -80,6 +80,45 @@ TEST(Machine, OutOfReachNamesTheDriveAndTheAmount) {
   EXPECT_LT(solved.reach[0], 0.0);
 }
 
+TEST(Machine, SpareCoordinatesShareAMotionSoThatAllKeepTheirRanges) {
+  // Two axes along X: the shortest way would give each half of it, more than one of them has.
+  const Machine machine = tests::MachineFromText(
+      "kompono = 1\nformula = \"part O X U tool\"\n"
+      "[axis.X]\nrange = [-50, 50]\n[axis.U]\nrange = [-400, 400]\n");
+  const Solution solved = machine.Inverse(Target({{0, 300.0}}));
+  ASSERT_TRUE(solved.ok()) << solved.message;
+  const double x = solved.coordinates[machine.FindCoordinate("X")];
+  const double u = solved.coordinates[machine.FindCoordinate("U")];
+  EXPECT_NEAR(x + u, 300.0, 1e-9);
+  EXPECT_LE(std::abs(x), 50.0);
+  EXPECT_LE(std::abs(u), 400.0);
+  EXPECT_NEAR(machine.Inverse(Target({{0, 60.0}})).coordinates[0], 30.0, 1e-9)
+      << "where the shortest way keeps all ranges it stays";
+}
+
+TEST(Machine, AStretchedWristFindsTheTurnsThatAreWithinReach) {
+  // B C of the struts and B of the turret: two ways to one rotation, one of them out of reach.
+  const Machine machine = tests::LoadMachine("kdd_counter_spindle");
+  VectorXd z = machine.home();
+  for (const auto& [name, value] : {std::pair{"struts.Y", 101.586},
+                                    {"struts.Z", 978.759},
+                                    {"struts.B", 1.00544},
+                                    {"struts.C", 0.215107},
+                                    {"B", 0.801886}}) {
+    const int at = machine.FindCoordinate(name);
+    ASSERT_GE(at, 0) << name;
+    z[at] = value;
+  }
+  const Pose<double> X_WT = machine.ToolPose(z, machine.nominal());
+  const PoseNumbers numbers = NumbersFromPose(X_WT, layout::RotationOrder::kXYZ);
+  PoseTarget target;
+  for (std::size_t k = 0; k < 6; ++k) target.component[k] = numbers.value[k];
+  const Solution solved = machine.Inverse(target);
+  ASSERT_TRUE(solved.ok()) << solved.message;
+  EXPECT_LE((solved.X_WT.p - X_WT.p).norm(), 1e-8);
+  EXPECT_LE((solved.X_WT.R - X_WT.R).norm(), 1e-9);
+}
+
 TEST(Machine, DriveZeroAndDirectionRelateReadingsToCarriages) {
   const Machine machine = tests::MachineFromText(
       "kompono = 1\nformula = \"part O (XYZ):delta tool\"\n[block.delta]\nmodule = "

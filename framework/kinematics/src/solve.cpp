@@ -406,6 +406,31 @@ void MoveWithinLimits(const PoseProblem& problem, VectorXd& z, Error& error) {
   }
 }
 
+/// Three turns can give one rotation in two ways, and a wrist that starts stretched out may end in
+/// the wrong one: where a limit is broken, starts on either side of `start` are tried too.
+void TryOtherTurns(const PoseProblem& problem, const VectorXd& start, VectorXd& z, Error& error) {
+  const auto& coordinates = problem.impl.coordinates;
+  const auto turns =
+      std::count_if(coordinates.begin(), coordinates.end(), [](const auto& c) { return c.rotary; });
+  double violation = turns < 3 ? 0.0 : Violation(problem, z);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    for (const double turn : {0.5, -0.5}) {
+      if (violation == 0.0) return;
+      if (!coordinates[i].rotary) continue;
+      VectorXd other = start;
+      other[static_cast<Eigen::Index>(i)] += turn;
+      int iterations = 0;
+      Error there = Converge(problem, other, iterations);
+      if (!IsMet(problem, there)) continue;
+      const double left = Violation(problem, other);
+      if (left >= violation) continue;
+      violation = left;
+      z = other;
+      error = std::move(there);
+    }
+  }
+}
+
 }  // namespace
 
 Solution Machine::Inverse(const PoseTarget& target,
@@ -432,7 +457,10 @@ Solution Machine::Inverse(const PoseTarget& target,
     problem.size = std::max(problem.size, std::abs(problem.wanted.value[k]));
   if (!problem.rows.components.empty()) {
     Error here = Converge(problem, out.coordinates, out.iterations);
-    if (IsMet(problem, here)) MoveWithinLimits(problem, out.coordinates, here);
+    if (IsMet(problem, here)) {
+      MoveWithinLimits(problem, out.coordinates, here);
+      TryOtherTurns(problem, start, out.coordinates, here);
+    }
     out.residual = here.largest;
     if (!IsMet(problem, here)) {
       const bool too_many = RankOf(here.J, problem.column_scale) < here.J.rows();
