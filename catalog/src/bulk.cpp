@@ -38,7 +38,7 @@ void BeginBulk(SQLite::Database& db) {
 
 void EndBulk(SQLite::Database& db) {
   // SQLite sorts the entries of a new index in portions as large as its cache. Portions that fit
-  // the processor's cache are sorted nearly twice as fast: 1.8 s instead of 3.2 s for three
+  // the processor's cache are sorted nearly twice as fast: 1.9 s instead of 3.2 s for three
   // million.
   Cache(db, 4096);
   SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);

@@ -50,7 +50,10 @@ void CheckStruts(const Machine& machine,
   const auto& blocks = machine.layout().blocks;
   if (std::none_of(blocks.begin(), blocks.end(), LimitsStruts)) return;
   const auto judge = analysis::PoseJudge::Make(machine, machine.nominal(), {});
-  if (!judge) return;  // the layout's own patterns were judged when it was read
+  if (!judge) {  // a joint on a body whose directions are not known
+    for (const Diagnostic& problem : judge.error()) out.push_back(problem.message);
+    return;
+  }
   for (const auto& broken : analysis::BrokenStrutLimits(*judge, solution.coordinates)) {
     const bool swing = broken.constraint->kind == analysis::Constraint::Kind::kSwing;
     out.push_back(swing ? fmt::format("{} by {} deg lies above its limit {} deg",

@@ -8,6 +8,27 @@
 namespace kompono::analysis {
 namespace {
 
+Machine Biglide() {
+  return tests::MachineFromText(R"(
+kompono = 1
+formula = "part O (XY):glides tool"
+[block.glides]
+module = "biglide"
+parameters = { L1 = 400, L2 = 400, width = 0 }
+home = { X = 0, Y = 200 }
+)");
+}
+
+PoseBlock Judged(const PoseJudge& judge, const std::vector<tests::NamedPose>& list) {
+  PoseBlock poses(judge);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    for (Eigen::Index i = 0; i < list[k].z.size(); ++i)
+      poses.column(static_cast<std::size_t>(i))[k] = list[k].z[i];
+  }
+  poses.Judge(list.size());
+  return poses;
+}
+
 TEST(Dexterity, OfManyPosesIsThatOfEachForEveryMechanism) {
   std::mt19937 random(tests::Seed());
   for (const std::string& name : tests::ShippedMachineFiles()) {
@@ -16,13 +37,8 @@ TEST(Dexterity, OfManyPosesIsThatOfEachForEveryMechanism) {
     for (std::size_t m = 0; m < judge->mechanisms().size(); ++m) {
       const double length = CharacteristicLength(*judge, m);
       DexterityBlock block(*judge, m, length);
-      PoseBlock poses(*judge);
       const std::vector<tests::NamedPose> list = tests::PosesOf(machine, 40, &random);
-      for (std::size_t k = 0; k < list.size(); ++k) {
-        for (Eigen::Index i = 0; i < list[k].z.size(); ++i)
-          poses.column(static_cast<std::size_t>(i))[k] = list[k].z[i];
-      }
-      poses.Judge(list.size());
+      const PoseBlock poses = Judged(*judge, list);
       block.Evaluate(poses, list.size());
       for (std::size_t k = 0; k < list.size(); ++k) {
         const Dexterity exact = DexterityAt(*judge, m, list[k].z, length).dexterity;
@@ -63,13 +79,8 @@ TEST(Dexterity, TellsTheSidesOfTypeTwoSingularitiesApart) {
     for (std::size_t m = 0; m < judge->mechanisms().size(); ++m) {
       const PoseJudge::Mechanism& mechanism = judge->mechanisms()[m];
       DexterityBlock block(*judge, m, 100.0, true);
-      PoseBlock poses(*judge);
       const std::vector<tests::NamedPose> list = tests::PosesOf(machine, 40, &random);
-      for (std::size_t k = 0; k < list.size(); ++k) {
-        for (Eigen::Index i = 0; i < list[k].z.size(); ++i)
-          poses.column(static_cast<std::size_t>(i))[k] = list[k].z[i];
-      }
-      poses.Judge(list.size());
+      const PoseBlock poses = Judged(*judge, list);
       block.Evaluate(poses, list.size());
       const double home = Determinant(mechanism, machine.home());
       for (std::size_t k = 0; k < list.size(); ++k) {
@@ -85,14 +96,7 @@ TEST(Dexterity, TellsTheSidesOfTypeTwoSingularitiesApart) {
 TEST(Dexterity, OfTheBiglideFollowsFromItsStruts) {
   // With struts at angles ±a to the rail, q̇i = ẋ ± tan(a) ẏ: J = [1 t; 1 -t], singular values √2
   // and √2 t; at 45° the condition is 1.
-  const Machine machine = tests::MachineFromText(R"(
-kompono = 1
-formula = "part O (XY):glides tool"
-[block.glides]
-module = "biglide"
-parameters = { L1 = 400, L2 = 400, width = 0 }
-home = { X = 0, Y = 200 }
-)");
+  const Machine machine = Biglide();
   const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
   EXPECT_EQ(CharacteristicLength(*judge, 0), 1.0);
   const double middle = 400.0 / std::sqrt(2.0);
@@ -119,14 +123,7 @@ TEST(Dexterity, CharacteristicLengthIsBestAtHome) {
 }
 
 TEST(DexterityOver, FindsTheExtremesOfTheBiglideAndIgnoresThreads) {
-  const Machine machine = tests::MachineFromText(R"(
-kompono = 1
-formula = "part O (XY):glides tool"
-[block.glides]
-module = "biglide"
-parameters = { L1 = 400, L2 = 400, width = 0 }
-home = { X = 0, Y = 200 }
-)");
+  const Machine machine = Biglide();
   const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
   const Region region{
       .z = machine.home(), .varied = {0, 1}, .lower = {-100, 50}, .upper = {100, 350}};
@@ -146,14 +143,7 @@ home = { X = 0, Y = 200 }
 }
 
 TEST(DexterityOver, LeavesOutWhatLiesBeyondASingularityUnlessAsked) {
-  const Machine machine = tests::MachineFromText(R"(
-kompono = 1
-formula = "part O (XY):glides tool"
-[block.glides]
-module = "biglide"
-parameters = { L1 = 400, L2 = 400, width = 0 }
-home = { X = 0, Y = 200 }
-)");
+  const Machine machine = Biglide();
   const auto judge = PoseJudge::Make(machine, machine.nominal(), {});
   // Both struts lie on the rail's line at Y = 0: as many poses on either side.
   const Region region{

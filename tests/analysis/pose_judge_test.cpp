@@ -141,16 +141,21 @@ TEST(CountGrid, AfterAStopTellsWhatWasDone) {
   EXPECT_LT(count.poses, steps[0] * steps[1]);
 }
 
-TEST(PoseJudge, SwingOfAPodIsTheAngleFromHome) {
-  // One pod of the tripod leads straight up at home; 30° of swing at its foot is tan 30° sideways.
-  const Machine machine = tests::MachineFromText(R"(
+/// Its first pod leads straight up at home; 30° of swing at its foot is tan 30° sideways.
+Machine Pods(const std::string& limits = {}) {
+  return tests::MachineFromText(R"(
 kompono = 1
 formula = "part O (XYZ):pods tool"
+units = { angle = "rad" }
 [block.pods]
 module = "tripod"
 parameters = { foot = [[0, 0, 0], [500, 0, 0], [0, 500, 0]] }
 home = { X = 0, Y = 0, Z = 400 }
-)");
+)" + limits);
+}
+
+TEST(PoseJudge, SwingOfAPodIsTheAngleFromHome) {
+  const Machine machine = Pods();
   const auto judge =
       PoseJudge::Make(machine,
                       machine.nominal(),
@@ -186,19 +191,8 @@ TEST(PoseJudge, StrutsOfAHexapodCollideWhenThePlatformTurnsFarEnough) {
             Constraint::Kind::kClearance);
 }
 
-constexpr std::string_view kLimitedPods = R"(
-kompono = 1
-formula = "part O (XYZ):pods tool"
-units = { angle = "rad" }
-[block.pods]
-module = "tripod"
-parameters = { foot = [[0, 0, 0], [500, 0, 0], [0, 500, 0]] }
-home = { X = 0, Y = 0, Z = 400 }
-swing = { "foot1" = 0.5235987755982988 }
-)";
-
 TEST(PoseJudge, KeepsTheSwingsThatTheLayoutGivesUnlessToldNotTo) {
-  const Machine machine = tests::MachineFromText(std::string(kLimitedPods));
+  const Machine machine = Pods("swing = { \"foot1\" = 0.5235987755982988 }\n");
   const double edge = 400.0 * std::tan(std::numbers::pi / 6.0);
   const Eigen::Vector3d outside(edge + 0.01, 0.0, 400.0);
   const auto judge = PoseJudge::Make(machine, machine.nominal(), {});

@@ -167,6 +167,21 @@ strut_diameter = 60
   EXPECT_EQ(Json({"solve", "pods.toml", "--pose", "X=0,Y=0,Z=400"}, 0)["limits"].size(), 0U);
 }
 
+TEST_F(Solve, ASwingThatCannotBeJudgedIsSaidAndNotDropped) {
+  Write("lambda.toml", R"(
+kompono = 1
+formula = "part O (XY):drive tool"
+[block.drive]
+module = "lambda"
+parameters = { L1 = 1200, L2 = 820, L3 = 600 }
+home = { X = 0, Y = 600 }
+swing = { "joint" = 30 }
+)");
+  const nlohmann::json solved = Json({"solve", "lambda.toml", "--pose", "X=0,Y=600"}, 1);
+  EXPECT_EQ(solved["limits"][0],
+            "no strut has a joint 'drive.joint' on base, carriage or platform");
+}
+
 TEST_F(Solve, OutOfReachIsANegativeAnswerWithoutNumbers) {
   // Y = 1300 mm is farther from the rail than link 1 is long.
   const nlohmann::json solved = Json({"solve", lambda_, "--pose", "X=0,Y=-700,Z=0"}, 1);

@@ -149,7 +149,8 @@ Diagnostics UnknownJoints(const std::vector<SwingLimit>& limits,
   for (std::size_t i = 0; i < limits.size(); ++i) {
     if (used[i]) continue;
     out.push_back({.code = "E0721",
-                   .message = fmt::format("no strut has a joint '{}'", limits[i].joint),
+                   .message = fmt::format("no strut has a joint '{}' on base, carriage or platform",
+                                          limits[i].joint),
                    .help = DidYouMean(limits[i].joint, names, 12)});
   }
   return out;
@@ -178,6 +179,7 @@ Parsed<PoseJudge> PoseJudge::Make(const Machine& machine,
     const MechanismPoints at_home = PointsAt(mechanism, machine.home());
     for (const StrutEnds& strut : at_home.struts) {
       for (const int end : {strut.from, strut.to}) {
+        if (at_home.body[static_cast<std::size_t>(end)] == PointBody::kOther) continue;
         names.push_back(mechanism.block + "." +
                         mechanism.description->points[static_cast<std::size_t>(end)]);
       }

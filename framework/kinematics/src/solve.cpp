@@ -378,8 +378,7 @@ MatrixXd FreeDirections(const PoseProblem& problem, const Error& error) {
 
 /// Where coordinates are left over, several settings give the pose: from one that breaks a limit
 /// this looks for one that keeps all, along the free directions with steps that grow and shrink.
-void MoveWithinLimits(const PoseProblem& problem, VectorXd& z, Error& error) {
-  double violation = Violation(problem, z);
+void MoveWithinLimits(const PoseProblem& problem, VectorXd& z, Error& error, double& violation) {
   double step = 0.1;  // of the size, or rad
   for (int trial = 0; trial < 100 && violation > 0.0 && step > 1e-4;) {
     const MatrixXd free = FreeDirections(problem, error);
@@ -408,11 +407,15 @@ void MoveWithinLimits(const PoseProblem& problem, VectorXd& z, Error& error) {
 
 /// Three turns can give one rotation in two ways, and a wrist that starts stretched out may end in
 /// the wrong one: where a limit is broken, starts on either side of `start` are tried too.
-void TryOtherTurns(const PoseProblem& problem, const VectorXd& start, VectorXd& z, Error& error) {
+void TryOtherTurns(const PoseProblem& problem,
+                   const VectorXd& start,
+                   VectorXd& z,
+                   Error& error,
+                   double& violation) {
   const auto& coordinates = problem.impl.coordinates;
   const auto turns =
       std::count_if(coordinates.begin(), coordinates.end(), [](const auto& c) { return c.rotary; });
-  double violation = turns < 3 ? 0.0 : Violation(problem, z);
+  if (turns < 3) return;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     for (const double turn : {0.5, -0.5}) {
       if (violation == 0.0) return;
@@ -429,6 +432,13 @@ void TryOtherTurns(const PoseProblem& problem, const VectorXd& start, VectorXd& 
       error = std::move(there);
     }
   }
+}
+
+/// Of the settings that give the pose, one that keeps what limits there are, if one is found.
+void KeepLimits(const PoseProblem& problem, const VectorXd& start, VectorXd& z, Error& error) {
+  double violation = Violation(problem, z);
+  if (violation > 0.0) MoveWithinLimits(problem, z, error, violation);
+  if (violation > 0.0) TryOtherTurns(problem, start, z, error, violation);
 }
 
 }  // namespace
@@ -457,10 +467,7 @@ Solution Machine::Inverse(const PoseTarget& target,
     problem.size = std::max(problem.size, std::abs(problem.wanted.value[k]));
   if (!problem.rows.components.empty()) {
     Error here = Converge(problem, out.coordinates, out.iterations);
-    if (IsMet(problem, here)) {
-      MoveWithinLimits(problem, out.coordinates, here);
-      TryOtherTurns(problem, start, out.coordinates, here);
-    }
+    if (IsMet(problem, here)) KeepLimits(problem, start, out.coordinates, here);
     out.residual = here.largest;
     if (!IsMet(problem, here)) {
       const bool too_many = RankOf(here.J, problem.column_scale) < here.J.rows();

@@ -65,7 +65,6 @@ class DexterityBlock {
 
   /// Poses 0 … count - 1 of a block. NaN out of reach.
   void Evaluate(const PoseBlock& poses, std::size_t count);
-  /// Squares of the smallest and the largest singular value.
   [[nodiscard]] Dexterity At(std::size_t pose) const;
   /// True wherever sides are not looked at.
   [[nodiscard]] bool OnHomeSide(std::size_t pose) const;
