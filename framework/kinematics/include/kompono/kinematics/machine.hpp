@@ -191,8 +191,8 @@ class Machine {
                                        const VectorXd& theta,
                                        const VectorXd& start) const;
 
-  /// Inverse problem: pose -> z -> readings. Where several settings give the pose, the one nearest to
-  /// `start`; if that breaks reach or a range, others are tried.
+  /// Inverse problem: pose -> z -> readings. Where several settings give the pose, the one nearest
+  /// to `start`; if that breaks reach or a range, others are tried.
   [[nodiscard]] Solution Inverse(const PoseTarget& target,
                                  const VectorXd& theta,
                                  const VectorXd& start) const;
