@@ -2,9 +2,11 @@
 #include "identifiability.hpp"
 
 #include "null_words.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -56,6 +58,48 @@ void ReduceColumns(const std::vector<bool>& preferred, Eigen::MatrixXd* basis) {
   }
 }
 
+/// Directions in u that J sees so weakly that their deviation exceeds `weakest`.
+struct WeakDirections {
+  Eigen::MatrixXd u;  ///< orthonormal, orthogonal to the exact null space
+  std::vector<double> sigma;
+};
+
+WeakDirections FindWeak(const Eigen::MatrixXd& J,
+                        const Eigen::MatrixXd& gauge,
+                        Eigen::Index rank,
+                        double weakest) {
+  const Eigen::MatrixXd triangle = Reduced(J);
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(triangle - triangle * gauge * gauge.transpose(),
+                                           Eigen::ComputeFullV);
+  const Eigen::VectorXd& values = svd.singularValues();
+  Eigen::Index strong = rank;
+  while (strong > 0 && values[strong - 1] * weakest < 1.0) --strong;
+  WeakDirections weak{.u = svd.matrixV().middleCols(strong, rank - strong), .sigma = {}};
+  for (Eigen::Index k = strong; k < rank; ++k) weak.sigma.push_back(1.0 / values[k]);
+  return weak;
+}
+
+/// Weak directions behind the null space. A number counts as part of one if that alone adds more
+/// than one to its deviation.
+void AddWeak(const WeakDirections& weak,
+             const Eigen::VectorXd& norm,
+             Eigen::MatrixXd* null_active,
+             Eigen::MatrixXd* gauge_active) {
+  const auto more = static_cast<Eigen::Index>(weak.sigma.size());
+  const Eigen::Index exact = gauge_active->cols();
+  null_active->conservativeResize(Eigen::NoChange, exact + more);
+  gauge_active->conservativeResize(Eigen::NoChange, exact + more);
+  gauge_active->rightCols(more) = weak.u;
+  for (Eigen::Index k = 0; k < more; ++k) {
+    for (Eigen::Index i = 0; i < norm.size(); ++i) {
+      const double part = weak.u(i, k);
+      const bool matters = std::abs(part) * weak.sigma[static_cast<std::size_t>(k)] > 1.0;
+      (*null_active)(i, exact + k) = matters ? norm[i] * part : 0.0;
+    }
+    null_active->col(exact + k).normalize();
+  }
+}
+
 bool IsSingleNumber(const std::string& name) {
   return name.find('[') == std::string::npos && !name.ends_with(".zero");
 }
@@ -64,7 +108,8 @@ bool IsSingleNumber(const std::string& name) {
 
 RankAnalysis AnalyzeRank(const Eigen::MatrixXd& J,
                          const std::vector<bool>& held,
-                         double threshold) {
+                         double threshold,
+                         double weakest) {
   const Eigen::Index n = J.cols();
   RankAnalysis analysis;
   analysis.column_norm = J.colwise().norm();
@@ -98,13 +143,21 @@ RankAnalysis AnalyzeRank(const Eigen::MatrixXd& J,
   while (analysis.rank < values.size() && values[analysis.rank] > threshold * values[0]) {
     ++analysis.rank;
   }
-  const Eigen::Index null = count - analysis.rank;
   if (analysis.rank > 0) analysis.condition = values[0] / values[analysis.rank - 1];
-  const Eigen::MatrixXd null_active = svd.matrixV().rightCols(null);
-  const Eigen::MatrixXd gauge_active = Orthonormal(norm.cwiseInverse().asDiagonal() * null_active);
+  Eigen::MatrixXd null_active = svd.matrixV().rightCols(count - analysis.rank);
+  Eigen::MatrixXd gauge_active = Orthonormal(norm.cwiseInverse().asDiagonal() * null_active);
   const Eigen::MatrixXd root = norm.cwiseInverse().asDiagonal() *
                                svd.matrixV().leftCols(analysis.rank) *
                                values.head(analysis.rank).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd exact_root = root - gauge_active * (gauge_active.transpose() * root);
+  // No direction has more variance than all together.
+  if (exact_root.squaredNorm() > weakest * weakest) {
+    WeakDirections weak = FindWeak(J(Eigen::all, active), gauge_active, analysis.rank, weakest);
+    analysis.rank -= static_cast<Eigen::Index>(weak.sigma.size());
+    AddWeak(weak, norm, &null_active, &gauge_active);
+    analysis.weak_sigma = std::move(weak.sigma);
+  }
+  const Eigen::Index null = gauge_active.cols();
   const Eigen::MatrixXd free_root = root - gauge_active * (gauge_active.transpose() * root);
   const Eigen::MatrixXd covariance_active = free_root * free_root.transpose();
   analysis.null_unit.setZero(n, null);
@@ -127,13 +180,17 @@ std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
                                              const std::vector<RowModel*>& rows,
                                              const Eigen::VectorXd& theta) {
   std::vector<NullDirection> directions;
-  Eigen::MatrixXd basis = analysis.null_unit;
+  const auto weak = static_cast<Eigen::Index>(analysis.weak_sigma.size());
+  const Eigen::Index exact = analysis.null_unit.cols() - weak;
+  Eigen::MatrixXd basis = analysis.null_unit.leftCols(exact);
   std::vector<bool> preferred;
   for (const int index : selection.free) {
     preferred.push_back(IsSingleNumber(selection.parameters[static_cast<std::size_t>(index)].name));
   }
-  if (basis.cols() == 0) return directions;
+  if (analysis.null_unit.cols() == 0) return directions;
   ReduceColumns(preferred, &basis);
+  basis.conservativeResize(Eigen::NoChange, exact + weak);
+  basis.rightCols(weak) = analysis.null_unit.rightCols(weak);
   const NullWords words(machine, selection.parameters, rows, theta);
   for (Eigen::Index k = 0; k < basis.cols(); ++k) {
     basis.col(k) /= basis.col(k).cwiseAbs().maxCoeff();
@@ -145,6 +202,15 @@ std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
     }
     change /= change.cwiseAbs().maxCoeff();
     directions.push_back(words.Describe(change));
+    if (k < exact) continue;
+    const double sigma = analysis.weak_sigma[static_cast<std::size_t>(k - exact)];
+    NullDirection& last = directions.back();
+    last.weak = true;
+    last.words = fmt::format(
+        "{}; the measurements see that so weakly that it would be known to no better than {:.0f} "
+        "tolerances, and it is held at the smallest change",
+        last.words,
+        sigma);
   }
   return directions;
 }

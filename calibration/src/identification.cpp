@@ -30,6 +30,8 @@ namespace {
 constexpr std::size_t kCoarseRows = 1500;  ///< that come before a fit of many more
 constexpr std::size_t kRankRows = 3000;
 constexpr std::size_t kWordRows = 200;
+constexpr int kGaugePasses = 3;    ///< until what is held is what cannot be seen
+constexpr double kRegular = 1e-9;  ///< pivots of equations with columns of unit length
 
 /// Covariance of the unknowns that are not held, for a regular H.
 Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& H, const std::vector<bool>& held) {
@@ -171,13 +173,13 @@ class Identification {
   }
 
   void Fit() {
+    Eigen::VectorXd u = selection_.Unknowns(theta_before_);
     LeastSquares problem{.rows = poses_.get(),
                          .selection = &selection_,
                          .chosen = Some(kCoarseRows),
                          .weights = {},
-                         .gauge = Eigen::MatrixXd(selection_.size(), 0),
+                         .gauge = GaugeAtStart(u),
                          .max_iterations = options_.max_iterations};
-    Eigen::VectorXd u = selection_.Unknowns(theta_before_);
     bool near = false;
     if (problem.chosen.size() < fitted_.size()) {
       // Some of the rows lead almost to the end; the others then need one pass or two.
@@ -200,23 +202,51 @@ class Identification {
     report_.cost_before = CostOf(rows_);
     Keep(fit);
     RankAnalysis analysis = Analyze(fit);
-    if (analysis.gauge.cols() > 0 && fit.converged) {
-      problem.chosen = fitted_;
-      if (options_.gauge == Gauge::kFreeze) {
-        u = Freeze(fit.u, analysis, &problem);
-      } else {
-        // The smallest change among all equally good ones: take the part along the null space out
-        // and converge again with it held at zero.
-        u = fit.u - analysis.gauge * (analysis.gauge.transpose() * fit.u);
-        problem.gauge = analysis.gauge;
-      }
-      fit = SolveLeastSquares(problem, u);
+    problem.chosen = fitted_;
+    for (int pass = 0; pass < kGaugePasses && fit.converged; ++pass) {
+      const Eigen::Index held = problem.gauge.cols();
+      const bool settled =
+          pass == 0 ? analysis.gauge.cols() + held == 0 : analysis.gauge.cols() == held;
+      if (settled) break;
+      Settle(analysis, &problem, &fit);
       Keep(fit);
       analysis = Analyze(fit);
     }
     theta_ = selection_.Theta(fit.u.data());
     report_.theta_after = theta_.head(report_.theta_before.size());
     Judge(fit, analysis);
+  }
+
+  /// What the measurements cannot see at the start is held from the first step on: the equations
+  /// know nothing of it but rounding, and would follow that far away. Empty if they are regular.
+  Eigen::MatrixXd GaugeAtStart(const Eigen::VectorXd& u) {
+    Eigen::MatrixXd none(selection_.size(), 0);
+    const NormalEquations at =
+        poses_->Assemble(selection_.Theta(u.data()), Some(kCoarseRows), {}, true);
+    if (!at.ok) return none;
+    const Eigen::MatrixXd full = at.H.selfadjointView<Eigen::Upper>();
+    const Eigen::VectorXd norm = full.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const Eigen::LDLT<Eigen::MatrixXd> ldlt(norm.asDiagonal() * full * norm.asDiagonal());
+    if (ldlt.vectorD().minCoeff() > kRegular) return none;
+    struct Fit start;
+    start.u = u;
+    start.cost_after = at.cost;
+    start.H = selection_.scale.asDiagonal() * full * selection_.scale.asDiagonal();
+    return Analyze(start).gauge;
+  }
+
+  /// Converges again with the unseen combinations settled at this solution.
+  void Settle(const RankAnalysis& analysis, LeastSquares* problem, struct Fit* fit) {
+    Eigen::VectorXd u = fit->u;
+    if (options_.gauge == Gauge::kFreeze && analysis.gauge.cols() > 0) {
+      u = Freeze(fit->u, analysis, problem);
+    } else {
+      // The smallest change among all equally good ones: take the part along the null space out
+      // and converge again with it held at zero.
+      u -= analysis.gauge * (analysis.gauge.transpose() * fit->u);
+      problem->gauge = analysis.gauge;
+    }
+    *fit = SolveLeastSquares(*problem, u);
   }
 
   /// Chooses one number of every unseen combination to stay at its start; returns the equally good
@@ -227,6 +257,7 @@ class Identification {
     const Eigen::MatrixXd& N = analysis.gauge;
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(N.transpose());
     std::vector<Eigen::Index> rows;
+    report_.frozen.clear();
     problem->gauge = Eigen::MatrixXd::Zero(N.rows(), N.cols());
     for (Eigen::Index k = 0; k < N.cols(); ++k) {
       rows.push_back(pivots.colsPermutation().indices()[k]);
@@ -308,7 +339,7 @@ class Identification {
         const std::optional<double>& prior = selection_.prior[static_cast<std::size_t>(i)];
         if (prior) J(at++, i) = selection_.scale[i] / *prior;
       }
-      return AnalyzeRank(J, at_bound_, options_.rank_threshold);
+      return AnalyzeRank(J, at_bound_, options_.rank_threshold, Weakest(fit));
     };
     const std::vector<std::size_t> some = Some(kRankRows);
     RankAnalysis analysis = analyze(some);
@@ -323,6 +354,16 @@ class Identification {
     report_.dof = report_.numbers + static_cast<int>(priors) - report_.rank;
     report_.scaled_condition = analysis.condition;
     return analysis;
+  }
+
+  /// Largest deviation in u with which a combination is followed. Weights of rows without given
+  /// deviations are measured by the errors left.
+  [[nodiscard]] double Weakest(const struct Fit& fit) const {
+    if (options_.weak_tolerances <= 0.0) return std::numeric_limits<double>::infinity();
+    if (!report_.sigma_assumed) return options_.weak_tolerances;
+    const auto spare =
+        static_cast<double>(std::max<Eigen::Index>(1, report_.numbers - selection_.size()));
+    return options_.weak_tolerances / std::max(1e-30, std::sqrt(2.0 * fit.cost_after / spare));
   }
 
   void Judge(const struct Fit& fit, const RankAnalysis& analysis) {

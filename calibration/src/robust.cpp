@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kompono::calibration {
 namespace {
@@ -113,7 +114,12 @@ class RobustSolver {
       for (int pass = 0; pass < 2; ++pass) {
         Weigh(fit, width);
         problem_.max_iterations = kStepsPerWidth;
-        fit = SolveLeastSquares(problem_, fit.u);
+        Fit next = SolveLeastSquares(problem_, fit.u);
+        if (next.squares.empty()) {  // some row has no pose there: the step before has to do
+          problem_.weights.clear();
+          return fit;
+        }
+        fit = std::move(next);
       }
       if (width == 1.0) break;
     }

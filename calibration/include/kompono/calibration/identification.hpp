@@ -79,6 +79,9 @@ struct IdentifyOptions {
   std::uint64_t seed = 1;
   int max_iterations = 100;
   double rank_threshold = 1e-9;  ///< relative to the largest singular value, columns of unit length
+  /// Combinations whose predicted deviation is more than so many manufacturing tolerances are held
+  /// like those that are not seen at all, and named; 0: followed however weakly they are seen.
+  double weak_tolerances = 100.0;
   double correlation_threshold = 0.95;  ///< pairs above it are reported
   Outliers outliers = Outliers::kAutomatic;
   Gauge gauge = Gauge::kMinimumNorm;
@@ -135,6 +138,7 @@ struct CorrelatedPair {
 struct NullDirection {
   /// Change of each parameter, the largest being ±1 (mm or rad).
   std::vector<std::pair<std::string, double>> parts;
+  bool weak = false;   ///< seen, but worth less than the drawing: IdentifyOptions::weak_tolerances
   std::string words;   ///< "open_base.x and part.datum.x can only be told apart up to their sum"
   std::string remedy;  ///< "lock one of them, or measure the orientation too"
 };
