@@ -68,6 +68,9 @@ inline constexpr CodeTitle kRejected{"W0460", "row left out of the fit"};
 inline constexpr CodeTitle kTooManyOutliers{"W0461", "too many rows that stand out"};
 inline constexpr CodeTitle kBadCampaign{"E0468", "wrong description of measurements"};
 inline constexpr CodeTitle kArmsOnHeights{"W0462", "arms fitted to heights alone"};
+inline constexpr CodeTitle kMapRows{"E0470", "too few rows for a residual map"};
+inline constexpr CodeTitle kBadMap{"E0471", "wrong residual map"};
+inline constexpr CodeTitle kMapRefused{"W0472", "residual map that does not help"};
 inline constexpr CodeTitle kHeldOutWorse{"W0459", "held-out rows that became worse"};
 }  // namespace codes
 
