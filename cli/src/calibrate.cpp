@@ -14,12 +14,14 @@
 #include <array>
 #include <memory>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/calibration/cross_validation.hpp"
 #include "kompono/calibration/html_report.hpp"
 #include "kompono/calibration/identification.hpp"
 #include "kompono/calibration/iso_figures.hpp"
 #include "kompono/calibration/klipper_delta.hpp"
 #include "kompono/calibration/report.hpp"
+#include "kompono/calibration/residual_map.hpp"
 #include "kompono/calibration/zone_accuracy.hpp"
 
 namespace kompono::cli {
@@ -54,7 +56,7 @@ struct Options {
   double drive_sigma_mm = 0.0;
   double drive_sigma_deg = 0.0;
   std::string gauge = "minimum";
-  std::string html, map;
+  std::string html, map, residual_map;
   int map_steps = 5;
   std::vector<MeasurementSource> sources;  ///< the measurements, or those of a description
   int folds = 0;
@@ -297,6 +299,45 @@ std::optional<ExitCode> WriteMap(Session& session,
   return std::nullopt;
 }
 
+ordered_json GainJson(const calibration::MapGain& gain) {
+  return {{"rows", gain.rows}, {"without_mm", gain.without_mm}, {"with_mm", gain.with_mm}};
+}
+
+/// The map of what the geometry leaves: its figures, and the file if it helps.
+std::optional<ExitCode> WriteResidualMap(Session& session,
+                                         const Machine& machine,
+                                         const CalibrationReport& report,
+                                         const MeasurementFiles& files,
+                                         const IdentifyOptions& identify,
+                                         const Options& options,
+                                         ordered_json* document) {
+  if (options.residual_map.empty() || !report.ok()) return std::nullopt;
+  const Parsed<calibration::MappedResiduals> mapped =
+      calibration::MapResiduals(machine, files.set, report, identify, {.seed = options.seed});
+  if (!mapped) return session.Refuse(mapped.error());
+  const calibration::MapJudgement& judged = mapped->judged;
+  ordered_json& out = (*document)["residual_map"];
+  out = {{"kept", judged.kept},
+         {"verdict", judged.verdict},
+         {"fitted", GainJson(judged.fitted)},
+         {"validated", GainJson(judged.validated)}};
+  if (judged.held_out) out["held_out"] = GainJson(*judged.held_out);
+  if (!session.json) session.console.Out(calibration::RenderText(judged));
+  if (!judged.kept) {
+    session.console.Report({{.severity = Severity::kWarning,
+                             .code = calibration::codes::kMapRefused.code,
+                             .file = options.residual_map,
+                             .message = "the residual map is " + judged.verdict,
+                             .help = "the calibrated layout alone is the better model"}});
+    return std::nullopt;
+  }
+  const std::string text = calibration::WriteResidualMap(machine, *mapped, SourceText(files));
+  if (const auto failure = WriteFileAside(options.residual_map, text, options.force))
+    return session.Refuse(*failure);
+  session.console.Say(options.residual_map + " written");
+  return std::nullopt;
+}
+
 ExitCode Identify(Session& session,
                   const Machine& machine,
                   const MeasurementFiles& files,
@@ -337,6 +378,9 @@ ExitCode Identify(Session& session,
   }
   if (const auto failed = WriteMap(session, machine, report, files, options, &document))
     return *failed;
+  if (const auto failed =
+          WriteResidualMap(session, machine, report, files, identify, options, &document))
+    return *failed;
   const auto failed = WriteFiles(session, machine, report, files, document, options);
   if (failed) return *failed;
   if (session.json) session.console.Json(std::move(document));
@@ -373,7 +417,8 @@ ExitCode Run(Session& session, const Options& given) {
         .message = options.file.empty() ? "LAYOUT is required" : "MEASUREMENTS is required",
         .help = "kompono calibrate LAYOUT MEASUREMENTS..., or kompono calibrate plan LAYOUT"});
   }
-  for (const std::string& file : {options.out, options.report, options.html, options.map}) {
+  for (const std::string& file :
+       {options.out, options.report, options.html, options.map, options.residual_map}) {
     if (const auto exists = RefuseToOverwrite(file, options.force)) return session.Refuse(*exists);
   }
   ExitCode code = ExitCode::kOk;
@@ -474,6 +519,7 @@ void AddCalibrate(CLI::App& root, Session& session) {
   file("--report", options->report, "The whole report as JSON, for kompono catalog add --report");
   file("--html", options->html, "The report as one HTML page with its diagrams");
   file("--map", options->map, "CSV of how well the tool point is known over the work zone");
+  file("--residual-map", options->residual_map, "Map of what the geometry leaves, if it helps");
   command->add_option("--map-steps", options->map_steps, "Values of each linear coordinate (5)")
       ->type_name("N")
       ->check(CLI::Range(1, 100));

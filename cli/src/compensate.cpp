@@ -11,6 +11,9 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <optional>
+
+#include "kompono/calibration/residual_map.hpp"
 
 namespace kompono::cli {
 namespace {
@@ -19,10 +22,11 @@ using kinematics::Machine;
 
 constexpr const char* kExamples =
     "  kompono compensate machine.toml calibrated.toml program.csv -o corrected.csv\n"
-    "  kompono compensate machine.toml calibrated.toml --grid 5 -o table.csv";
+    "  kompono compensate machine.toml calibrated.toml --grid 5 -o table.csv\n"
+    "  kompono compensate machine.toml calibrated.toml program.csv --residual-map map.toml";
 
 struct Options {
-  std::string file, calibrated, program, out;
+  std::string file, calibrated, program, out, residual_map;
   int grid = 0;
   bool force = false;
 };
@@ -117,9 +121,29 @@ struct Corrected {
   double largest_mm = 0.0;
 };
 
+/// Coordinates at which the real machine stands at `target`, what its map says it is off included.
+kinematics::Solution Reach(const Machine& real,
+                           const calibration::ResidualMap* map,
+                           const kinematics::PoseTarget& target) {
+  constexpr int kPasses = 3;  // the map changes by micrometres per millimetre
+  kinematics::Solution solution = real.Inverse(target);
+  for (int pass = 0; map != nullptr && pass < kPasses && solution.ok(); ++pass) {
+    const Eigen::Vector3d off = map->At(real, solution.coordinates);
+    kinematics::PoseTarget aim = target;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (aim.component[i]) *aim.component[i] -= off[static_cast<Eigen::Index>(i)];
+    }
+    solution = real.Inverse(aim);
+  }
+  return solution;
+}
+
 /// For every pose: readings of the real machine, and the pose that makes the nominal control send
 /// them.
-Corrected Correct(const Machine& nominal, const Machine& real, const Program& program) {
+Corrected Correct(const Machine& nominal,
+                  const Machine& real,
+                  const calibration::ResidualMap* map,
+                  const Program& program) {
   Corrected out;
   std::string header;
   for (const int k : program.components) {
@@ -149,7 +173,7 @@ Corrected Correct(const Machine& nominal, const Machine& real, const Program& pr
       line += (line.empty() ? "" : ",") + Exact(Outward(row[i], k > 2));
     }
     ++out.rows;
-    const kinematics::Solution wanted = real.Inverse(target);
+    const kinematics::Solution wanted = Reach(real, map, target);
     const kinematics::Solution told = nominal.Inverse(target);
     const kinematics::Solution there =
         nominal.Forward(wanted.drives, nominal.nominal(), told.coordinates);
@@ -203,7 +227,16 @@ ExitCode Run(Session& session, const Options& options) {
       }
     }
   }
-  const Corrected corrected = Correct(*nominal, *real, *program);
+  std::optional<calibration::ResidualMap> map;
+  if (!options.residual_map.empty()) {
+    const Parsed<std::string> text = ReadWhole(options.residual_map);
+    if (!text) return session.Refuse(text.error());
+    Parsed<calibration::ResidualMap> parsed =
+        calibration::ParseResidualMap(*text, options.residual_map, *real);
+    if (!parsed) return session.Refuse(parsed.error());
+    map = std::move(*parsed);
+  }
+  const Corrected corrected = Correct(*nominal, *real, map ? &*map : nullptr, *program);
   if (!options.out.empty()) {
     if (const auto failure = WriteFileAside(options.out, corrected.csv, options.force))
       return session.Refuse(*failure);
@@ -245,6 +278,7 @@ void AddCompensate(CLI::App& root, Session& session) {
   command->add_option("--grid", options->grid, "Instead a table: N values of each of X, Y and Z")
       ->type_name("N")
       ->check(CLI::Range(2, 200));
+  file("--residual-map", options->residual_map, "What calibrate --residual-map wrote");
   file("-o,--out", options->out, "CSV file to write; else stdout");
   command->add_flag("--force", options->force, "Replace the file if it exists");
   session.OnRun(command, [&session, options] { return Run(session, *options); });
