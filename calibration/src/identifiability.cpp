@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <Eigen/QR>
@@ -206,10 +207,13 @@ std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
     const double sigma = analysis.weak_sigma[static_cast<std::size_t>(k - exact)];
     NullDirection& last = directions.back();
     last.weak = true;
-    last.words = fmt::format(
-        "{}; the measurements see that so weakly that it would be known to no better than {:.0f} "
-        "tolerances, and it is held at the smallest change",
-        last.words,
+    constexpr std::string_view kNone = "without any effect";
+    const std::size_t none = last.words.find(kNone);
+    if (none != std::string::npos) last.words.replace(none, kNone.size(), "with hardly any effect");
+    last.words += fmt::format(
+        "; seen so weakly that it would be known to no better than {:.0f} tolerances, and "
+        "therefore "
+        "held at the smallest change",
         sigma);
   }
   return directions;

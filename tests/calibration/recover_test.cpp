@@ -319,9 +319,27 @@ TEST(Identify, SaysThatAnExactFitSaysNothing) {
   options.seed = 5;
   options.sigma_mm = 0.1;
   PrinterRegion(&options);
-  const CalibrationReport report = Identify(Delta(), Measured(Delta(), Delta().nominal(), options));
+  IdentifyOptions follow;
+  follow.weak_tolerances = 0.0;  // what three points hardly see is followed all the same
+  const MeasurementSet set = Measured(Delta(), Delta().nominal(), options);
+  const CalibrationReport report = Identify(Delta(), set, follow);
   EXPECT_EQ(report.dof, 0) << RenderText(report);
   EXPECT_THAT(report.diagnostics, Contains(Field(&Diagnostic::code, "W0452")));
+}
+
+TEST(Identify, WhatIsSeenTooWeaklyIsHeldAndNamed) {
+  SimulateOptions options;
+  options.count = 3;
+  options.seed = 5;
+  options.sigma_mm = 0.1;
+  PrinterRegion(&options);
+  const CalibrationReport report = Identify(Delta(), Measured(Delta(), Delta().nominal(), options));
+  EXPECT_TRUE(report.ok());
+  ASSERT_FALSE(report.unidentifiable.empty());
+  EXPECT_TRUE(report.unidentifiable.back().weak);
+  EXPECT_THAT(report.unidentifiable.back().words, HasSubstr("seen so weakly"));
+  EXPECT_EQ(report.rank + static_cast<int>(report.unidentifiable.size()),
+            static_cast<int>(report.free.size()));
 }
 
 TEST(Identify, SaysThatDataContradictAndWhichRowStandsOut) {
