@@ -29,6 +29,8 @@ constexpr double kGain = 8.0;              ///< by which a change must lower the
 constexpr double kUnreached = 1000.0;      ///< mm; what a row without a pose counts
 constexpr double kRadianLengthMm = 100.0;
 constexpr double kFarFactor = 10.0;
+constexpr double kSlip = 50.0;         ///< mm; a machine or an instrument is not that far off ...
+constexpr double kSlipFactor = 100.0;  ///< ... while its other rows are so much nearer
 
 using Errors = std::vector<double>;  ///< of rows, mm
 
@@ -54,11 +56,13 @@ class ColumnCheck {
               const MeasurementSet& set,
               const TableRow& header,
               const Columns& columns,
+              bool keep_slips,
               Complaints& complaints)
       : machine_(machine),
         set_(set),
         header_(header),
         columns_(columns),
+        keep_slips_(keep_slips),
         complaints_(complaints),
         values_(AllNominal(machine, set)),
         linear_(machine, {}) {
@@ -357,12 +361,28 @@ class ColumnCheck {
     const double usual = Median(known);
     for (std::size_t i = 0; i < count; ++i) {
       if (errors[i] <= std::max(kSuspicious, kFarFactor * usual)) continue;
-      AboutLine(set_.measurements[i].line,
+      NameFarRow(set_.measurements[i].line, errors[i], usual);
+    }
+  }
+
+  void NameFarRow(int line, double error, double usual) {
+    const std::string message = fmt::format(
+        "the row is {:.4g} mm away from what the nominal machine predicts, the "
+        "others {:.4g} mm",
+        error,
+        usual);
+    if (!keep_slips_ && error > std::max(kSlip, kSlipFactor * usual)) {
+      AboutLine(line,
+                Severity::kError,
+                codes::kSlip.code,
+                message,
+                "mend or remove the row (a unit, a sign, a digit?), or have it left out with "
+                "--outliers reject");
+    } else {
+      AboutLine(line,
+                Severity::kWarning,
                 codes::kFarRow.code,
-                fmt::format("the row is {:.4g} mm away from what the nominal machine predicts, the "
-                            "others {:.4g} mm",
-                            errors[i],
-                            usual),
+                message,
                 "look for a slip in this row; it will be left out if it stands out after the fit "
                 "too");
     }
@@ -387,6 +407,7 @@ class ColumnCheck {
       }
       if (difference < std::max(0.05, 10.0 * m.sigma_mm.value_or(0.0))) continue;
       AboutLine(m.line,
+                Severity::kWarning,
                 codes::kSameReadings.code,
                 fmt::format("the row has the readings of line {}, but measured {:.4g} mm beside it",
                             other.line,
@@ -395,20 +416,21 @@ class ColumnCheck {
     }
   }
 
-  void AboutLine(int line, std::string code, std::string message, std::string help) {
+  void AboutLine(
+      int line, Severity severity, std::string code, std::string message, std::string help) {
     std::size_t begin = 0;
     for (int i = 1; i < line && begin < set_.text.size(); ++i) {
       begin = set_.text.find('\n', begin) + 1;
     }
     const std::size_t end = std::min(set_.text.find('\n', begin), set_.text.size());
-    complaints_.Add(
-        Severity::kWarning, std::move(code), begin, end, std::move(message), std::move(help));
+    complaints_.Add(severity, std::move(code), begin, end, std::move(message), std::move(help));
   }
 
   const kinematics::Machine& machine_;
   const MeasurementSet& set_;
   const TableRow& header_;
   const Columns& columns_;
+  bool keep_slips_;
   Complaints& complaints_;
   Eigen::VectorXd values_;
   kinematics::Linearisation linear_;
@@ -421,8 +443,9 @@ void CheckColumns(const kinematics::Machine& machine,
                   const MeasurementSet& set,
                   const TableRow& header,
                   const Columns& columns,
+                  bool keep_slips,
                   Complaints& complaints) {
-  ColumnCheck(machine, set, header, columns, complaints).Run();
+  ColumnCheck(machine, set, header, columns, keep_slips, complaints).Run();
 }
 
 }  // namespace kompono::calibration

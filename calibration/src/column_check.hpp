@@ -11,12 +11,14 @@ namespace kompono::calibration {
 
 /// Compares a set with the nominal machine column by column and complains of what a change of
 /// columns would explain: swapped columns (E0423), a negated one (E0426), one in another unit
-/// (E0415). Rows far from what the others suggest are named (W0427), and rows with the same
-/// readings whose measurements differ (W0428).
+/// (E0415). Rows that only a slip explains are refused (E0473) unless `keep_slips`; those far from
+/// what the others suggest are named (W0427), and rows with the same readings whose measurements
+/// differ (W0428).
 void CheckColumns(const kinematics::Machine& machine,
                   const MeasurementSet& set,
                   const TableRow& header,
                   const Columns& columns,
+                  bool keep_slips,
                   Complaints& complaints);
 
 }  // namespace kompono::calibration

@@ -434,7 +434,9 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
   }
   if (!complaints.HasErrors() && options.check_units) {
     CheckUnits(machine, set, table.header, columns, complaints);
-    if (!complaints.HasErrors()) CheckColumns(machine, set, table.header, columns, complaints);
+    if (!complaints.HasErrors()) {
+      CheckColumns(machine, set, table.header, columns, options.keep_slips, complaints);
+    }
   }
   const bool refused = complaints.HasErrors();
   Diagnostics said = complaints.Take();

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include <Eigen/Cholesky>
@@ -24,6 +25,7 @@ constexpr int kExchangePasses = 3;
 /// What is known of every number before: a hundred units of u (tolerances). It decides nothing once
 /// the rows determine a number.
 constexpr double kWeakPrior = 1e-4;
+constexpr int kDraws = 8;       ///< of poses, until there are enough that may be taken
 constexpr double kBlind = 1e3;  ///< mm; a predicted deviation above says that rows are missing
 
 class Planner {
@@ -32,42 +34,63 @@ class Planner {
       : machine_(machine), options_(options) {}
 
   Parsed<Plan> Run() {
-    SimulateOptions draw = options_.instrument;
-    draw.count = options_.candidates + options_.judged;
-    draw.held_out = 0;
-    Parsed<MeasurementSet> pool =
-        Simulate(machine_, machine_, machine_.nominal(), WithoutNoise(draw));
-    if (!pool) return tl::unexpected(std::move(pool.error()));
-    pool_ = std::move(*pool);
-    Parsed<Selection> selection = SelectUnknowns(machine_, pool_, options_.identify);
-    if (!selection) return tl::unexpected(std::move(selection.error()));
-    selection_ = std::move(*selection);
-    Differentiate();
-    if (static_cast<int>(rows_.size()) < 2 * options_.points) {
-      return tl::unexpected(Diagnostics{
-          {.code = codes::kFewPoses.code,
-           .file = machine_.layout().file.string(),
-           .message = fmt::format(
-               "only {} regular poses were found to choose {} from", rows_.size(), options_.points),
-           .help = "make the region larger, or allow poses nearer to a singularity"}});
+    const Parsed<analysis::PoseJudge> judge =
+        analysis::PoseJudge::Make(machine_, machine_.nominal(), options_.limits);
+    if (!judge) return tl::unexpected(judge.error());
+    block_.emplace(*judge);
+    for (int draw = 0; draw < kDraws && !Enough(); ++draw) {
+      const Parsed<MeasurementSet> drawn = Draw(options_.instrument.seed + 1000003ULL * draw);
+      if (!drawn) return tl::unexpected(drawn.error());
+      if (draw == 0) {
+        Parsed<Selection> selection = SelectUnknowns(machine_, *drawn, options_.identify);
+        if (!selection) return tl::unexpected(std::move(selection.error()));
+        selection_ = std::move(*selection);
+        pool_.fixtures = drawn->fixtures;
+      }
+      Differentiate(*drawn);
     }
+    if (static_cast<int>(rows_.size()) < 2 * options_.points) return tl::unexpected(TooFew());
+    SumOverZone();
     std::vector<std::size_t> chosen = Greedy();
     Exchange(&chosen);
     return Report(Ordered(chosen));
   }
 
  private:
-  static SimulateOptions WithoutNoise(SimulateOptions draw) {
-    // Deviations become weights; the rows themselves stay nominal.
+  [[nodiscard]] bool Enough() const {
+    return tool_.size() >= static_cast<std::size_t>(options_.judged) &&
+           rows_.size() >= static_cast<std::size_t>(options_.candidates);
+  }
+
+  /// Rows of the nominal machine without noise: deviations become weights.
+  [[nodiscard]] Parsed<MeasurementSet> Draw(std::uint64_t seed) const {
+    SimulateOptions draw = options_.instrument;
+    draw.seed = seed;
+    draw.count = options_.candidates + options_.judged;
+    draw.held_out = 0;
     draw.sigma_mm = 0.0;
     draw.sigma_rad = 0.0;
-    return draw;
+    return Simulate(machine_, machine_, machine_.nominal(), draw);
+  }
+
+  [[nodiscard]] Diagnostics TooFew() const {
+    return {{.code = codes::kFewPoses.code,
+             .file = machine_.layout().file.string(),
+             .message = fmt::format("of {} poses drawn {} are near a singularity and in {} a joint "
+                                    "swings too far or struts touch; {} are too few to choose {} "
+                                    "from",
+                                    drawn_,
+                                    near_singular_,
+                                    obstructed_,
+                                    rows_.size(),
+                                    options_.points),
+             .help = "make the region larger, or relax what the poses must keep"}};
   }
 
   /// Whitened derivatives of the candidates and of the tool over the zone.
-  void Differentiate() {
+  void Differentiate(const MeasurementSet& drawn) {
     PoseWorker worker(machine_,
-                      pool_,
+                      drawn,
                       selection_.free,
                       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(machine_.drives().size())));
     worker.SetGeometry(selection_.nominal);
@@ -76,35 +99,59 @@ class Planner {
     const double rad = options_.instrument.sigma_rad > 0.0 ? options_.instrument.sigma_rad
                                                            : options_.identify.default_sigma_rad;
     Eigen::Matrix<double, 6, Eigen::Dynamic> twists;
-    for (std::size_t k = 0; k < pool_.measurements.size(); ++k) {
-      PoseRow row{.measurement = &pool_.measurements[k], .sigma_mm = mm, .sigma_rad = rad};
+    for (const Measurement& measurement : drawn.measurements) {
+      if (Enough()) return;
+      PoseRow row{.measurement = &measurement, .sigma_mm = mm, .sigma_rad = rad};
+      ++drawn_;
       if (worker.FindStart(selection_.nominal, nullptr, &row) !=
               kinematics::SolveStatus::kConverged ||
-          !Regular(row)) {
+          !MayBeTaken(row) || !worker.Linearise(&row, true, false)) {
         continue;
       }
-      if (!worker.Linearise(&row, true, false)) continue;
       const Eigen::MatrixXd J =
           worker.jacobian().topRows(worker.rho().size()) * selection_.scale.asDiagonal();
-      if (k < static_cast<std::size_t>(options_.judged)) {
+      if (tool_.size() < static_cast<std::size_t>(options_.judged)) {
         if (!worker.ToolByParameters(&row, &twists)) continue;
         Eigen::MatrixXd tool = Eigen::MatrixXd::Zero(3, selection_.size());
         tool.leftCols(twists.cols()) = twists.topRows<3>();
         tool_.push_back(tool * selection_.scale.asDiagonal());
       } else {
         rows_.push_back(J);
-        index_.push_back(k);
+        pool_.measurements.push_back(measurement);
       }
     }
-    // Σ_zone Tᵀ T, so that a set's deviation is one trace.
+  }
+
+  /// Σ_zone Tᵀ T, so that a set's deviation is one trace.
+  void SumOverZone() {
     zone_ = Eigen::MatrixXd::Zero(selection_.size(), selection_.size());
     for (const Eigen::MatrixXd& T : tool_) {
       zone_ += T.transpose() * T / static_cast<double>(tool_.size());
     }
   }
 
-  [[nodiscard]] bool Regular(const PoseRow& row) const {
-    for (const kinematics::Singularity& s : machine_.Singularities(row.z, machine_.nominal())) {
+  /// Both poses of rows with two readings.
+  [[nodiscard]] bool MayBeTaken(const PoseRow& row) {
+    for (const Eigen::VectorXd* z : {&row.z, &row.z_second}) {
+      if (z->size() == 0) continue;
+      if (!Regular(*z)) {
+        ++near_singular_;
+        return false;
+      }
+      for (Eigen::Index i = 0; i < z->size(); ++i) {
+        block_->column(static_cast<std::size_t>(i))[0] = (*z)[i];
+      }
+      block_->Judge(1);
+      if (!block_->Inside(0)) {
+        ++obstructed_;
+        return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool Regular(const Eigen::VectorXd& z) const {
+    for (const kinematics::Singularity& s : machine_.Singularities(z, machine_.nominal())) {
       if (s.margin < options_.least_margin) return false;
     }
     return true;
@@ -224,13 +271,16 @@ class Planner {
     Plan plan;
     plan.set.fixtures = pool_.fixtures;
     plan.free = static_cast<int>(selection_.free.size());
+    plan.drawn = drawn_;
+    plan.near_singular = near_singular_;
+    plan.obstructed = obstructed_;
     std::vector<std::size_t> first;
     Eigen::Index numbers = 0;
     for (const std::size_t k : ordered) {
       first.push_back(k);
       numbers += rows_[k].rows();
       plan.tool_sigma_mm.push_back(ToolSigma(first));
-      Measurement row = pool_.measurements[index_[k]];
+      Measurement row = pool_.measurements[k];
       row.row = static_cast<int>(first.size());
       if (options_.instrument.sigma_mm > 0.0) row.sigma_mm = options_.instrument.sigma_mm;
       if (options_.instrument.sigma_rad > 0.0) row.sigma_rad = options_.instrument.sigma_rad;
@@ -265,10 +315,11 @@ class Planner {
 
   const kinematics::Machine& machine_;
   const PlanOptions& options_;
-  MeasurementSet pool_;
+  MeasurementSet pool_;  ///< the candidates
   Selection selection_;
-  std::vector<Eigen::MatrixXd> rows_;  ///< whitened, by u
-  std::vector<std::size_t> index_;     ///< of rows_ in the pool
+  std::optional<analysis::PoseBlock> block_;
+  int drawn_ = 0, near_singular_ = 0, obstructed_ = 0;
+  std::vector<Eigen::MatrixXd> rows_;  ///< of the candidates, whitened, by u
   std::vector<Eigen::MatrixXd> tool_;
   Eigen::MatrixXd zone_;
 };

@@ -6,6 +6,7 @@
 #include "files.hpp"
 #include "machine_sheet.hpp"
 #include "patterns.hpp"
+#include "pose_limits.hpp"
 #include "session.hpp"
 #include "text.hpp"
 #include <fmt/format.h>
@@ -37,10 +38,11 @@ struct Options {
   std::string file;
   bool zone = false, dexterity = false, singularities = false, geometry = false, map = false;
   bool indices = false;
-  bool any_side = false, no_ranges = false, force = false;
-  std::vector<std::string> over, region, at, slice, joint;
+  bool any_side = false, force = false;
+  PoseLimitOptions limits;
+  std::vector<std::string> over, region, at, slice;
   std::string path, point, box, cylinder, csv, ply, svg;
-  std::optional<double> strut_diameter, clearance, length;
+  std::optional<double> length;
   double tolerance_percent = 0.5, tilt_deg = 15.0;
   unsigned threads = 0;
 };
@@ -132,17 +134,6 @@ void ReadHeld(const Machine& machine,
       task.slices.emplace_back(table.names()[*index],
                                Inward(*number, machine.coordinates()[*index].rotary));
   }
-}
-
-void ReadLimits(const Options& options, AnalysisTask& task, Diagnostics& problems) {
-  const Argument joint("--joint", options.joint);
-  for (const Assignment& assignment : joint.Split(problems)) {
-    const auto number = joint.Number(assignment, problems);
-    if (number) task.limits.swings.push_back({assignment.name, *number / kDegPerRad});
-  }
-  task.limits.of_layout = !options.no_ranges;
-  if (options.strut_diameter) task.limits.strut_radius_mm = 0.5 * *options.strut_diameter;
-  task.limits.clearance_mm = options.clearance;
 }
 
 /// "250x250x150".
@@ -255,7 +246,7 @@ Parsed<AnalysisTask> TaskOf(const Machine& machine, const Options& options) {
   ReadSpans(machine, options, task, problems);
   CompleteSpans(machine, options, task);
   ReadHeld(machine, options, task, problems);
-  ReadLimits(options, task, problems);
+  task.limits = ReadPoseLimits(options.limits, problems);
   task.box = ReadSizes("--box", options.box, problems);
   task.cylinder = ReadSizes("--cylinder", options.cylinder, problems);
   if (problems.empty() && !options.path.empty()) problems = ReadPath(machine, options.path, task);
@@ -357,17 +348,9 @@ void AddWhere(CLI::App& command, Session& session, Options& options) {
 }
 
 void AddLimits(CLI::App& command, Options& options) {
-  command
-      .add_option("--joint", options.joint, "Largest swing from home of a strut in a joint, deg")
-      ->type_name("POINT=DEG,..")
-      ->allow_extra_args(false);
-  command.add_option("--strut-diameter", options.strut_diameter, "Struts are this thick, mm")
-      ->type_name("MM")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--clearance", options.clearance, "Struts keep this distance, mm")
-      ->type_name("MM")
-      ->check(CLI::NonNegativeNumber);
-  command.add_flag("--no-ranges", options.no_ranges, "Reach only, without what the layout limits");
+  AddPoseLimits(command, options.limits);
+  command.add_flag(
+      "--no-ranges", options.limits.no_ranges, "Reach only, without what the layout limits");
   command.add_flag(
       "--any-side", options.any_side, "Beyond type 2 singularities too, not only on home's side");
   command

@@ -429,7 +429,8 @@ ExitCode Run(Session& session, const Options& given) {
       IdentifyOptionsOf(*machine, session.registry(), options, problems);
   if (!problems.empty()) return session.Refuse(problems);
   Diagnostics notes;
-  const Parsed<MeasurementFiles> files = ReadMeasurementFiles(options.sources, *machine, notes);
+  const Parsed<MeasurementFiles> files = ReadMeasurementFiles(
+      options.sources, *machine, {.keep_slips = options.outliers != "auto"}, notes);
   if (!files) {
     notes.insert(notes.end(), files.error().begin(), files.error().end());
     return session.Refuse(notes);

@@ -2,6 +2,7 @@
 // kompono calibrate plan: where to measure.
 #include "files.hpp"
 #include "patterns.hpp"
+#include "pose_limits.hpp"
 #include "session.hpp"
 #include "text.hpp"
 #include "zone.hpp"
@@ -23,11 +24,15 @@ using nlohmann::ordered_json;
 
 constexpr const char* kExamples =
     "  kompono calibrate plan machine.toml --points 20 --kind pose --sigma-mm 0.005 -o plan.csv\n"
-    "  kompono calibrate plan machine.toml --points 30 --kind position --criterion d";
+    "  kompono calibrate plan machine.toml --points 30 --kind position --criterion d\n"
+    "  kompono calibrate plan machine.toml --strut-diameter 40 --joint 'struts.base*=30' -o "
+    "plan.csv";
 
 struct Options {
   std::string file, out, kind = "position", criterion = "tool";
   std::vector<std::string> free, lock, region;
+  PoseLimitOptions limits;
+  double least_margin = calibration::PlanOptions{}.least_margin;
   int points = 20, candidates = calibration::PlanOptions{}.candidates;
   double sigma_mm = 0.01, sigma_deg = 0.00057;
   std::uint64_t seed = 1;
@@ -51,6 +56,14 @@ std::string Micrometres(double mm) {
 std::string PlanText(const calibration::Plan& plan) {
   std::string text = fmt::format(
       "{} rows for {} free numbers, rank {}\n", plan.set.measurements.size(), plan.free, plan.rank);
+  if (plan.near_singular + plan.obstructed > 0) {
+    text += fmt::format(
+        "of {} poses drawn {} were too near a singularity, and in {} a joint swings too far or "
+        "struts touch\n",
+        plan.drawn,
+        plan.near_singular,
+        plan.obstructed);
+  }
   TextTable table({{"rows", true}, {"expected deviation of the tool point", true}});
   const std::size_t step = std::max<std::size_t>(1, plan.tool_sigma_mm.size() / 10);
   for (std::size_t i = 0; i < plan.tool_sigma_mm.size(); ++i) {
@@ -75,6 +88,9 @@ ordered_json PlanJson(const calibration::Plan& plan) {
   return {{"rows", plan.set.measurements.size()},
           {"free_parameters", plan.free},
           {"rank", plan.rank},
+          {"poses_drawn", plan.drawn},
+          {"near_singular", plan.near_singular},
+          {"obstructed", plan.obstructed},
           {"tool_sigma_mm", sigmas},
           {"random_tool_sigma_mm",
            std::isfinite(plan.random_tool_sigma_mm) ? ordered_json(plan.random_tool_sigma_mm)
@@ -98,6 +114,8 @@ ExitCode Run(Session& session, const Options& options) {
   plan_options.instrument.sigma_rad = options.sigma_deg / kDegPerRad;
   plan_options.instrument.seed = options.seed;
   plan_options.instrument.region = ReadRegion(options.region, *machine, problems);
+  plan_options.least_margin = options.least_margin;
+  plan_options.limits = ReadPoseLimits(options.limits, problems);
   plan_options.identify.free = SplitWords(options.free);
   plan_options.identify.lock = SplitWords(options.lock);
   if (!problems.empty()) return session.Refuse(problems);
@@ -171,6 +189,13 @@ void AddCalibratePlan(CLI::App& calibrate, Session& session) {
   command->add_option("--region", options->region, "Ranges of virtual coordinates to measure in")
       ->type_name("NAME=LO:HI,")
       ->allow_extra_args(false);
+  AddPoseLimits(*command, options->limits);
+  command
+      ->add_option("--least-margin",
+                   options->least_margin,
+                   "Singularity margin that every pose keeps (0.02)")
+      ->type_name("MARGIN")
+      ->check(CLI::Range(0.0, 1.0));
   command->add_option("--seed", options->seed, "Of the candidates (1)")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);

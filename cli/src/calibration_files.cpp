@@ -101,6 +101,7 @@ std::optional<double> PooledRms(const nlohmann::json& errors, const std::string&
 
 Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<MeasurementSource>& sources,
                                               const kinematics::Machine& machine,
+                                              const calibration::ReadOptions& options,
                                               Diagnostics& notes) {
   MeasurementFiles out;
   Diagnostics problems;
@@ -115,7 +116,7 @@ Parsed<MeasurementFiles> ReadMeasurementFiles(const std::vector<MeasurementSourc
       continue;
     }
     Parsed<calibration::MeasurementSet> set =
-        calibration::ParseMeasurements(*text, name, machine, {}, &notes);
+        calibration::ParseMeasurements(*text, name, machine, options, &notes);
     if (!set) {
       complain(set.error());
       continue;

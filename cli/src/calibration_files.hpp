@@ -35,6 +35,7 @@ struct MeasurementFiles {
 [[nodiscard]] Parsed<MeasurementFiles> ReadMeasurementFiles(
     const std::vector<MeasurementSource>& sources,
     const kinematics::Machine& machine,
+    const calibration::ReadOptions& options,
     Diagnostics& notes);
 
 /// What a calibrated layout says of its origin: "points.csv (sha256 ...)".

@@ -61,6 +61,48 @@ INSTANTIATE_TEST_SUITE_P(Both,
                                                                               : "tool_error";
                          });
 
+TEST(Plan, OffersNoPoseInWhichAJointSwingsTooFarOrStrutsTouch) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  PlanOptions options = TwentyPoses(PlanCriterion::kToolError);
+  const Plan free = Good(PlanMeasurements(machine, options));
+  EXPECT_EQ(free.obstructed, 0);
+  options.limits.swings = {{"struts.base*", 0.12}};
+  options.limits.strut_radius_mm = 20.0;
+  const Plan plan = Good(PlanMeasurements(machine, options));
+  EXPECT_GT(plan.obstructed, 0);
+  EXPECT_GT(plan.drawn, free.drawn);
+  const auto judge = analysis::PoseJudge::Make(machine, machine.nominal(), options.limits);
+  ASSERT_TRUE(judge);
+  const auto broken = [&](const Plan& of) {
+    analysis::PoseBlock poses(*judge);
+    const std::size_t count = of.set.measurements.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const kinematics::Solution at = machine.Forward(of.set.measurements[k].readings);
+      EXPECT_TRUE(at.ok());
+      for (Eigen::Index i = 0; i < at.coordinates.size(); ++i) {
+        poses.column(static_cast<std::size_t>(i))[k] = at.coordinates[i];
+      }
+    }
+    poses.Judge(count);
+    return count - poses.InsideCount();
+  };
+  EXPECT_GT(broken(free), 0U) << "the limits exclude nothing, so that this shows nothing";
+  EXPECT_EQ(broken(plan), 0U);
+}
+
+TEST(Plan, SaysWhyTooFewPosesAreLeft) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  PlanOptions options = TwentyPoses(PlanCriterion::kToolError);
+  options.limits.swings = {{"struts.base*", 1e-4}};
+  const auto plan = PlanMeasurements(machine, options);
+  ASSERT_FALSE(plan);
+  EXPECT_NE(plan.error().front().message.find("a joint swings too far"), std::string::npos);
+  options.limits.swings = {{"struts.nothing", 0.1}};
+  const auto wrong = PlanMeasurements(machine, options);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().front().code, "E0721");
+}
+
 /// RMS over `draws` identifications of the tool's error on poses of the zone.
 double ToolError(const kinematics::Machine& machine,
                  const MeasurementSet& rows,

@@ -99,7 +99,7 @@ TEST(Sanity, InvertedRotationsAreNamed) {
 TEST(Sanity, FarRowsAndContradictingRowsAreNamedWithTheirLines) {
   const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
   MeasurementSet set = Poses(machine, MeasurementKind::kPosition);
-  *set.measurements[6].position_mm[2] += 100.0;
+  *set.measurements[6].position_mm[2] += 20.0;
   set.measurements.push_back(set.measurements[10]);
   *set.measurements.back().position_mm[0] += 0.4;
   Diagnostics notes;
@@ -110,6 +110,21 @@ TEST(Sanity, FarRowsAndContradictingRowsAreNamedWithTheirLines) {
   EXPECT_THAT(
       said,
       AllOf(HasSubstr("W0428"), HasSubstr("poses.csv:42:1"), HasSubstr("the readings of line 12")));
+}
+
+TEST(Sanity, ARowWithASlipIsRefusedUnlessItIsToBeLeftOut) {
+  const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
+  MeasurementSet set = Poses(machine, MeasurementKind::kPosition);
+  *set.measurements[6].position_mm[2] /= 10.0;  // the point one digit too far to the left
+  set.measurements[9].readings[2] += 100.0;
+  const std::string text = WriteMeasurements(set, machine, {});
+  const auto refused = ParseMeasurements(text, "poses.csv", machine);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_THAT(RenderAll(refused.error(), {}),
+              AllOf(HasSubstr("E0473"), HasSubstr("poses.csv:8:1"), HasSubstr("poses.csv:11:1")));
+  const MeasurementSet kept =
+      Good(ParseMeasurements(text, "poses.csv", machine, {.keep_slips = true}));
+  EXPECT_EQ(Identify(machine, kept).rejected, (std::vector<int>{7, 10}));
 }
 
 TEST(Sanity, RowsOutOfReachAreNamedAndNothingIsFitted) {

@@ -95,6 +95,9 @@ struct ReadOptions {
   /// Compares with what the nominal machine predicts and refuses data that fit far better after a
   /// factor of 1000 (metres for millimetres) or of degrees for radians.
   bool check_units = true;
+  /// Rows so far from the nominal machine that only a slip explains them are named (W0427) and not
+  /// refused (E0473): the fit will leave them out.
+  bool keep_slips = false;
 };
 
 /// Reads and judges a measurement file; every problem of the file in one run (codes E04xx).

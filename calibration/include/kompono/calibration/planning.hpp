@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kompono/analysis/pose_judge.hpp"
 #include "kompono/calibration/identification.hpp"
 #include "kompono/calibration/simulation.hpp"
 #include "kompono/diagnostics/diagnostic.hpp"
@@ -31,6 +32,9 @@ struct PlanOptions {
   IdentifyOptions identify;  ///< what is free, priors, bounds
   /// Poses with a smaller singularity margin are not offered.
   double least_margin = 0.02;
+  /// What poses must keep besides reach and ranges: swings of joints, clearance between struts;
+  /// those of the layout unless told otherwise.
+  analysis::Limits limits;
 };
 
 struct Plan {
@@ -41,9 +45,13 @@ struct Plan {
   double random_tool_sigma_mm = 0.0;  ///< median of 200 random sets of as many rows
   int rank = 0;                       ///< of the chosen rows
   int free = 0;                       ///< free numbers
+  int drawn = 0;                      ///< poses looked at to get the candidates
+  int near_singular = 0;              ///< of them: nearer to a singularity than allowed
+  int obstructed = 0;                 ///< of them: a joint swings too far, or struts touch
 };
 
-/// E044x when poses cannot be drawn or too few are regular.
+/// E044x when poses cannot be drawn or too few may be taken; E0721 for a swing that matches no
+/// joint.
 [[nodiscard]] Parsed<Plan> PlanMeasurements(const kinematics::Machine& machine,
                                             const PlanOptions& options);
 
