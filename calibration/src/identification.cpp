@@ -3,6 +3,7 @@
 
 #include "identifiability.hpp"
 #include "least_squares.hpp"
+#include "locked_suspects.hpp"
 #include "pose_rows.hpp"
 #include "residuals.hpp"
 #include "robust.hpp"
@@ -30,6 +31,7 @@ namespace {
 constexpr std::size_t kCoarseRows = 1500;  ///< that come before a fit of many more
 constexpr std::size_t kRankRows = 3000;
 constexpr std::size_t kWordRows = 200;
+constexpr std::size_t kSuspectRows = 500;
 constexpr int kGaugePasses = 3;    ///< until what is held is what cannot be seen
 constexpr double kRegular = 1e-9;  ///< pivots of equations with columns of unit length
 
@@ -126,14 +128,15 @@ class Identification {
     report_.rows_fitted = static_cast<int>(fitted_.size());
     report_.rows_held_out = static_cast<int>(rows_.size() - fitted_.size());
     if (fitted_.empty()) return Refuse(codes::kNothingFitted.code, "no row is left for the fit");
-    poses_ = std::make_unique<PoseRows>(machine_,
-                                        set_,
-                                        selection_.free,
-                                        RowNoise{.default_sigma_mm = options_.default_sigma_mm,
-                                                 .default_sigma_rad = options_.default_sigma_rad,
-                                                 .drive_sigma_mm = options_.drive_sigma_mm,
-                                                 .drive_sigma_rad = options_.drive_sigma_rad});
+    poses_ = std::make_unique<PoseRows>(machine_, set_, selection_.free, Noise());
     return true;
+  }
+
+  [[nodiscard]] RowNoise Noise() const {
+    return {.default_sigma_mm = options_.default_sigma_mm,
+            .default_sigma_rad = options_.default_sigma_rad,
+            .drive_sigma_mm = options_.drive_sigma_mm,
+            .drive_sigma_rad = options_.drive_sigma_rad};
   }
 
   bool Refuse(std::string code, std::string message) {
@@ -395,6 +398,10 @@ class Identification {
           "measure more, lock parameters, or give them prior deviations";
     }
     WarnOfArms(set_, &report_);
+    if (report_.ok() && Contradicts(report_)) {
+      report_.suspects =
+          SuspectLocked(machine_, set_, Some(kSuspectRows), selection_, theta_, Noise());
+    }
     if (report_.ok()) WarnOfDoubts(set_, selection_, &report_);
   }
 

@@ -108,6 +108,11 @@ json ToJson(const CalibrationReport& report) {
         {{"first", pair.first}, {"second", pair.second}, {"correlation", pair.correlation}});
   }
   out["verdict"] = report.verdict;
+  if (!report.suspects.names.empty()) {
+    out["locked_suspects"] = {{"names", report.suspects.names},
+                              {"share", report.suspects.share},
+                              {"share_of_all", report.suspects.share_of_all}};
+  }
   out["observability"] = report.observability;
   out["frozen"] = report.frozen;
   out["groups"] = json::array();

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kChance = 1e-3;        ///< that one good row of all is rejected
 constexpr double kMostRejected = 0.35;  ///< of the rows; more are no outliers
+constexpr double kGross = 100.0;        ///< times the square at which a row of the start stands out
 constexpr double kNarrowing = 0.5;
 constexpr int kStepsPerWidth = 4;
 constexpr int kMostRounds = 12;
@@ -40,9 +41,11 @@ class RobustSolver {
         return out;
       }
     } else {
-      out.fit = SolveLeastSquares(problem_, u);
+      FindGross(u);
+      out.fit = gross_.empty() ? SolveLeastSquares(problem_, u) : FitWithout(gross_, u);
       const int spare = total_ - static_cast<int>(problem_.selection->size());
-      if (!out.fit.converged || spare < 3 || Outside(out.fit, {}).empty()) return out;
+      if (!out.fit.converged || spare < 3) return out;
+      if (gross_.empty() && Outside(out.fit, {}).empty()) return out;
       robust = Narrow(out.fit);
     }
     std::vector<std::size_t> rejected = Outside(robust, {});
@@ -72,6 +75,23 @@ class RobustSolver {
   }
 
  private:
+  /// Rows so far off at the start that least squares over all would lead nowhere. They wait until
+  /// the others are fitted and are judged then.
+  void FindGross(const Eigen::VectorXd& u) {
+    const NormalEquations rows =
+        problem_.rows->Assemble(problem_.selection->Theta(u.data()), problem_.chosen, {}, false);
+    if (!rows.ok) return;
+    Fit start;
+    start.squares = rows.squares;
+    const double variance = Variance(start);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      if (start.squares[all_[i]] > kGross * Limit(i) * variance) gross_.push_back(all_[i]);
+    }
+    if (static_cast<double>(gross_.size()) > kMostRejected * static_cast<double>(all_.size())) {
+      gross_.clear();
+    }
+  }
+
   /// Variance of unit weight that the bulk of the rows shows.
   [[nodiscard]] double Variance(const Fit& fit) const {
     std::vector<double> ratios;
@@ -107,6 +127,7 @@ class RobustSolver {
     Fit fit = wide;
     double largest = 0.0;
     for (std::size_t i = 0; i < all_.size(); ++i) {
+      if (std::binary_search(gross_.begin(), gross_.end(), all_[i])) continue;
       largest = std::max(largest, fit.squares[all_[i]] / (Limit(i) * Variance(fit)));
     }
     for (double width = std::max(1.0, 2.0 * largest);; width *= kNarrowing) {
@@ -147,6 +168,7 @@ class RobustSolver {
 
   LeastSquares problem_;
   std::vector<std::size_t> all_;
+  std::vector<std::size_t> gross_;  ///< ascending
   std::vector<int> numbers_;
   int total_ = 0;
   bool scale_known_;

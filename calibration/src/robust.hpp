@@ -15,12 +15,12 @@ struct RobustFit {
   bool too_many = false;
 };
 
-/// Two stages: least squares over all rows; then, if a whole row is off by more than chance allows,
-/// a loss of Geman and McClure's form on whole rows that is narrowed step by step from one that
-/// sees no outlier. Rows that still stand out are taken out and the others fitted by plain least
-/// squares, until the two sets no longer change.
-/// `scale_known`: the rows' deviations are real; else only their ratios are. `near`: u comes from a
-/// robust fit of some of the rows, so that what stands out there stands out in all.
+/// Two stages: least squares over all rows but those grossly off at the start; then, if a whole row
+/// is off by more than chance allows, a loss of Geman and McClure's form on whole rows that is
+/// narrowed step by step from one that sees no outlier. Rows that still stand out are taken out and
+/// the others fitted by plain least squares, until the two sets no longer change. `scale_known`:
+/// the rows' deviations are real; else only their ratios are. `near`: u comes from a robust fit of
+/// some of the rows, so that what stands out there stands out in all.
 [[nodiscard]] RobustFit SolveRobustly(LeastSquares problem,
                                       const Eigen::VectorXd& u,
                                       bool scale_known,

@@ -3,6 +3,7 @@
 
 #include "distributions.hpp"
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,18 +74,31 @@ Diagnostic Warning(const MeasurementSet& set,
           .help = std::move(help)};
 }
 
+/// What freeing further numbers would do about the errors left.
+std::string WordsOf(const LockedSuspects& suspects) {
+  if (suspects.names.empty()) {
+    return "no locked number of the machine explains them alone: look at the rows with the largest "
+           "residuals, or give larger deviations";
+  }
+  return fmt::format(
+      "freeing {} too would explain {:.0f} % of their squares, all numbers of the "
+      "machine {:.0f} %; else look at the rows with the largest residuals, or give "
+      "larger deviations",
+      fmt::join(suspects.names, ", "),
+      100.0 * suspects.share,
+      100.0 * suspects.share_of_all);
+}
+
 void WarnOfContradiction(const MeasurementSet& set, CalibrationReport* report) {
-  if (report->dof <= 0 || report->sigma_assumed) return;
+  if (!Contradicts(*report)) return;
   const double ratio = report->chi_squared / report->dof;
-  if (report->chi_squared < ChiSquaredUpper(1e-3, report->dof)) return;
   report->diagnostics.push_back(
       Warning(set,
               codes::kContradiction.code,
               fmt::format("the errors left are {:.3g} times what the given deviations allow: the "
                           "measurements contradict each other or this model of the machine",
                           std::sqrt(ratio)),
-              "look at the rows with the largest residuals, free more parameters, or give larger "
-              "deviations"));
+              WordsOf(report->suspects)));
 }
 
 /// Rows that stand out of the others, judged by a scale that they do not influence.
@@ -188,6 +202,11 @@ Groups GroupsOf(const CalibrationReport& report, Eigen::Index own) {
 }
 
 }  // namespace
+
+bool Contradicts(const CalibrationReport& report) {
+  return report.dof > 0 && !report.sigma_assumed &&
+         report.chi_squared >= ChiSquaredUpper(1e-3, report.dof);
+}
 
 Diagnostic AboutRow(const MeasurementSet& set,
                     const Measurement& measurement,

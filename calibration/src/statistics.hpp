@@ -46,6 +46,9 @@ void JudgeTool(const std::vector<std::size_t>& fitted,
 /// What chance says of the errors left, in words.
 [[nodiscard]] std::string Verdict(const CalibrationReport& report);
 
+/// The errors left are larger than the given deviations allow (0.1 %).
+[[nodiscard]] bool Contradicts(const CalibrationReport& report);
+
 /// Fitting struts to heights alone is warned of, also where it fails.
 void WarnOfArms(const MeasurementSet& set, CalibrationReport* report);
 

@@ -367,6 +367,32 @@ TEST(Identify, SaysThatDataContradictAndWhichRowStandsOut) {
   EXPECT_THAT(clean.diagnostics, ::testing::IsEmpty()) << RenderAll(clean.diagnostics, {});
 }
 
+TEST(Identify, NamesTheLockedNumberThatExplainsWhatIsLeft) {
+  const kinematics::Machine& machine = Gantry();
+  SimulateOptions options{.count = 80, .sigma_mm = 0.005};
+  IdentifyOptions fit{.free = {"C.position.*"}};
+  const MeasurementSet longer =
+      Measured(machine, Good(ChangedGeometry(machine, {{"X.rotation.c", 1e-3}})), options);
+  const CalibrationReport report = Identify(machine, longer, fit);
+  ASSERT_TRUE(report.ok());
+  ASSERT_EQ(report.suspects.names.size(), 1U) << RenderAll(report.diagnostics, {});
+  EXPECT_EQ(report.suspects.names.front(), "X.rotation.c");
+  EXPECT_GT(report.suspects.share, 0.95);
+  fit.free.push_back("X.rotation.c");
+  EXPECT_TRUE(Identify(machine, longer, fit).suspects.names.empty());
+}
+
+TEST(Identify, SuspectsNoLockedNumberOfNoise) {
+  const kinematics::Machine& machine = Gantry();
+  SimulateOptions options{.count = 80, .sigma_mm = 0.05};
+  MeasurementSet noisy = Measured(machine, machine.nominal(), options);
+  for (Measurement& m : noisy.measurements) m.sigma_mm = 0.005;
+  const CalibrationReport report = Identify(machine, noisy, {.free = {"C.position.*"}});
+  EXPECT_TRUE(report.suspects.names.empty());
+  EXPECT_LT(report.suspects.share_of_all, 0.25);
+  EXPECT_THAT(RenderAll(report.diagnostics, {}), HasSubstr("no locked number of the machine"));
+}
+
 TEST(Identify, WarnsOfAnArmThatASlipMadeAbsurd) {
   SimulateOptions options;
   options.sigma_mm = 0.01;

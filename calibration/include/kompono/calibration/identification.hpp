@@ -155,6 +155,14 @@ struct RowResidual {
 };
 
 /// The story of one identification.
+/// Numbers that were not free and would explain errors larger than the deviations allow, most
+/// effective first; empty where the deviations do allow them.
+struct LockedSuspects {
+  std::vector<std::string> names;  ///< three at most
+  double share = 0.0;              ///< of the squares left that freeing these would explain
+  double share_of_all = 0.0;       ///< that all numbers of the machine together would
+};
+
 struct CalibrationReport {
   IdentifyStatus status = IdentifyStatus::kBadInput;
   Diagnostics diagnostics;  ///< errors that made it fail, warnings about data and result
@@ -191,6 +199,7 @@ struct CalibrationReport {
   std::vector<NullDirection> unidentifiable;
   std::vector<ErrorStatistics> statistics;
   std::vector<RowResidual> rows;
+  LockedSuspects suspects;
   std::vector<int> rejected;  ///< numbers of the rows that stood out and were left out of the fit
 
   /// The parameters may be used.
