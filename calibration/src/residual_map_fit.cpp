@@ -95,9 +95,11 @@ std::vector<MapAxis> AxesOf(const kinematics::Machine& machine, const Samples& s
   std::sort(spreads.rbegin(), spreads.rend());
   if (spreads.size() > kMostAxes) spreads.resize(kMostAxes);
   std::vector<std::size_t> chosen;
+  chosen.reserve(spreads.size());
   for (const auto& [spread, index] : spreads) chosen.push_back(index);
   std::sort(chosen.begin(), chosen.end());
   std::vector<MapAxis> axes;
+  axes.reserve(chosen.size());
   for (const std::size_t index : chosen) {
     axes.push_back({.coordinate = machine.coordinates()[index].name, .values = {}});
   }
@@ -279,6 +281,7 @@ Smoothed BestMap(const kinematics::Machine& machine, const Samples& samples, std
     if (grid.error_mm.size() > kMostNodes) continue;
     const MapFit fit(machine, samples, std::move(grid));
     std::vector<Normals> sums;
+    sums.reserve(folds.size());
     for (const auto& fold : folds) sums.push_back(fit.SumsOf(fold));
     for (const double smoothing : kSmoothings) {
       double error = 0.0;

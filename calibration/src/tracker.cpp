@@ -18,6 +18,9 @@
 namespace kompono::calibration {
 namespace {
 
+constexpr double kOtherFrame = 5.0;         ///< mm; no datum is set up that badly
+constexpr double kOtherFrameFactor = 10.0;  ///< times what the best fit leaves
+
 constexpr int kAlignments = 4;      ///< passes, each without the points far off in the last
 constexpr double kFarFactor = 6.0;  ///< times the median
 constexpr double kStraight = 1e-4;  ///< points on a line: second over first singular value
@@ -241,6 +244,33 @@ class Joiner {
   Diagnostics complaints_;
 };
 
+/// A best fit that moves the points far and leaves little says that they stand in a frame of their
+/// own.
+void WarnOfOtherFrame(const kinematics::Machine& machine,
+                      std::string_view points_file,
+                      TrackerMeasurements* out) {
+  double rms_mm = 0.0;
+  const std::optional<Pose<double>> X_WL = Align(machine, out->set, &rms_mm);
+  if (!X_WL) return;
+  double moved_mm = 0.0;
+  for (const Measurement& m : out->set.measurements) {
+    const Eigen::Vector3d p(*m.position_mm[0], *m.position_mm[1], *m.position_mm[2]);
+    moved_mm += (*X_WL * p - p).norm() / static_cast<double>(out->set.measurements.size());
+  }
+  if (moved_mm < std::max(kOtherFrame, kOtherFrameFactor * rms_mm)) return;
+  Diagnostic warning{.severity = Severity::kWarning,
+                     .code = codes::kOtherFrame.code,
+                     .file = std::string(points_file),
+                     .message = fmt::format("the points stand {:.4g} mm beside where the nominal "
+                                            "machine has them, and {:.4g} mm after the best fit",
+                                            moved_mm,
+                                            rms_mm),
+                     .help =
+                         "they seem to be in the tracker's own frame: --align brings them into "
+                         "the workpiece datum"};
+  out->warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 Parsed<std::vector<TrackerPoint>> ReadTrackerPoints(std::string_view text,
@@ -294,14 +324,17 @@ Parsed<TrackerMeasurements> JoinTracker(const std::vector<TrackerPoint>& points,
   Parsed<std::string> joined = Joiner(points, points_file, readings_text, readings_file).Join();
   if (!joined) return tl::unexpected(std::move(joined.error()));
   const std::string file = fmt::format("{} with {}", readings_file, points_file);
-  Parsed<MeasurementSet> set =
-      ParseMeasurements(*joined, file, machine, {.check_units = options.align ? false : true});
+  Parsed<MeasurementSet> set = ParseMeasurements(
+      *joined, file, machine, {.check_units = !options.align, .keep_slips = true});
   if (!set) return tl::unexpected(std::move(set.error()));
   TrackerMeasurements out{.set = std::move(*set)};
   for (Measurement& m : out.set.measurements) {
     if (options.sigma_mm) m.sigma_mm = options.sigma_mm;
   }
-  if (!options.align) return out;
+  if (!options.align) {
+    WarnOfOtherFrame(machine, points_file, &out);
+    return out;
+  }
   out.X_WL = Align(machine, out.set, &out.fit_rms_mm);
   if (!out.X_WL) {
     return tl::unexpected(
@@ -316,8 +349,8 @@ Parsed<TrackerMeasurements> JoinTracker(const std::vector<TrackerPoint>& points,
     for (std::size_t i = 0; i < 3; ++i) m.position_mm[i] = p[static_cast<Eigen::Index>(i)];
   }
   // Again as a file of its own, so that its columns are judged where they stand now.
-  Parsed<MeasurementSet> judged =
-      ParseMeasurements(WriteMeasurements(out.set, machine, {}), file, machine);
+  Parsed<MeasurementSet> judged = ParseMeasurements(
+      WriteMeasurements(out.set, machine, {}), file, machine, {.keep_slips = true});
   if (!judged) return tl::unexpected(std::move(judged.error()));
   return out;
 }

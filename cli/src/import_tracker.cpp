@@ -64,6 +64,7 @@ ExitCode Run(Session& session, const Options& options) {
   const auto joined = calibration::JoinTracker(
       *points, options.points, *readings, options.readings, *machine, join);
   if (!joined) return session.Refuse(joined.error());
+  session.console.Report(joined->warnings);
   const std::string csv =
       calibration::WriteMeasurements(joined->set, *machine, Comments(options, *joined));
   if (!options.out.empty()) {

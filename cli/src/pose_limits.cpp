@@ -4,8 +4,6 @@
 #include "assignments.hpp"
 #include "text.hpp"
 
-#include <CLI/CLI.hpp>
-
 namespace kompono::cli {
 
 void AddPoseLimits(CLI::App& command, PoseLimitOptions& options) {

@@ -6,11 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kompono/analysis/pose_judge.hpp"
+#include <CLI/CLI.hpp>
 
-namespace CLI {
-class App;
-}
+#include "kompono/analysis/pose_judge.hpp"
 
 /// Options about what poses must keep besides reach.
 namespace kompono::cli {

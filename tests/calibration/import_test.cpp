@@ -196,6 +196,16 @@ TEST_F(Tracker, OneWrongPointDoesNotTurnTheFrame) {
   EXPECT_NEAR(joined.fit_rms_mm, good.fit_rms_mm, 0.1 * good.fit_rms_mm);
 }
 
+TEST_F(Tracker, PointsInTheTrackersFrameAreWarnedOfUnlessAligned) {
+  EXPECT_TRUE(Good(Join(Points(), true)).warnings.empty());
+  X_WL_ = Pose<double>{};
+  EXPECT_TRUE(Good(Join(Points(), false)).warnings.empty()) << "these are in the datum";
+  X_WL_.p = Eigen::Vector3d(30.0, -20.0, 0.0);
+  const Diagnostics warnings = Good(Join(Points(), false)).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings.front().code, "W0474");
+}
+
 TEST_F(Tracker, AFrameThatCanBeFreedIsFoundExactly) {
   MeasurementSet aligned = Good(Join(Points(), true)).set;
   IdentifyOptions options;

@@ -37,6 +37,7 @@ inline constexpr CodeTitle kNotJson{"E0421", "not a JSON object"};
 inline constexpr CodeTitle kRunMember{"E0422", "missing or wrong member of a run"};
 inline constexpr CodeTitle kSwapped{"E0423", "columns that look swapped"};
 inline constexpr CodeTitle kNegated{"E0426", "column that looks negated"};
+inline constexpr CodeTitle kOtherFrame{"W0474", "tracker points in another frame"};
 inline constexpr CodeTitle kSlip{"E0473", "row with a slip"};
 inline constexpr CodeTitle kFarRow{"W0427", "row far from what the nominal machine predicts"};
 inline constexpr CodeTitle kSameReadings{"W0428", "same readings, other measurement"};

@@ -42,6 +42,7 @@ struct TrackerMeasurements {
   MeasurementSet set;  ///< positions in the datum, or in the tracker's frame without `align`
   std::optional<Pose<double>> X_WL;  ///< tracker frame L in the datum W, if aligned
   double fit_rms_mm = 0.0;           ///< what the best fit leaves: the machine's errors
+  Diagnostics warnings;              ///< W0474: not aligned, and in another frame than the datum
 };
 
 /// Joins the points with a table of readings (columns as in measurement files): by name if both
