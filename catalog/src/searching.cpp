@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -85,11 +87,20 @@ double MostPossible(const std::vector<std::string>& wanted, std::vector<std::str
   return Similarity(wanted, features);
 }
 
-std::vector<Resembling> ResemblingFormulas(SQLite::Database& db,
-                                           const std::vector<std::string>& wanted) {
+using Moment = std::chrono::steady_clock::time_point;
+
+bool Past(Moment deadline) {
+  return std::chrono::steady_clock::now() >= deadline;
+}
+
+/// Nothing if the time was not enough.
+std::optional<std::vector<Resembling>> ResemblingFormulas(SQLite::Database& db,
+                                                          const std::vector<std::string>& wanted,
+                                                          Moment deadline) {
   std::vector<Resembling> found;
   SQLite::Statement row(db, "SELECT id, text FROM formula");
   while (row.executeStep()) {
+    if (Past(deadline)) return std::nullopt;
     const double similarity = MostPossible(wanted, FeaturesOf(row.getColumn(1).getString()));
     if (similarity > 0.0)
       found.push_back({.formula = row.getColumn(0).getInt64(), .similarity = similarity});
@@ -140,16 +151,25 @@ Parsed<std::vector<SearchHit>> SearchWords(SQLite::Database& db,
 
 /// Formulas first, there are fewer of them; their layouts in the order of what the formulas can
 /// reach, until nothing better can come.
-std::vector<SimilarLayout> SearchSimilar(SQLite::Database& db,
-                                         std::int64_t layout,
-                                         std::int64_t limit) {
+Parsed<std::vector<SimilarLayout>> SearchSimilar(SQLite::Database& db,
+                                                 std::int64_t layout,
+                                                 std::int64_t limit,
+                                                 std::chrono::milliseconds deadline) {
+  const Moment end = std::chrono::steady_clock::now() + deadline;
+  const auto too_late = [deadline] {
+    return Refuse("E0526",
+                  "similar",
+                  fmt::format("stopped after {} ms", deadline.count()),
+                  "the catalog has too many formulas to compare; 'kompono catalog query' with a "
+                  "condition on the formula finds layouts by index");
+  };
   SQLite::Statement modules(db,
                             "SELECT m.name FROM layout_block AS b JOIN module AS m "
                             "ON m.id = b.module_id WHERE b.layout_id = ?");
   SQLite::Statement formula(
       db, "SELECT f.text FROM layout AS l JOIN formula AS f ON f.id = l.formula_id WHERE l.id = ?");
   formula.bind(1, layout);
-  if (!formula.executeStep()) return {};
+  if (!formula.executeStep()) return std::vector<SimilarLayout>{};
   const std::vector<std::string> wanted =
       WithModules(FeaturesOf(formula.getColumn(0).getString()), ModulesOf(modules, layout));
 
@@ -159,7 +179,9 @@ std::vector<SimilarLayout> SearchSimilar(SQLite::Database& db,
       "ON f.id = l.formula_id WHERE l.formula_id = ? AND l.id <> ? ORDER BY l.id");
   const auto most = static_cast<std::size_t>(std::max<std::int64_t>(limit, 1));
   std::vector<SimilarLayout> best;
-  for (const Resembling& candidate : ResemblingFormulas(db, wanted)) {
+  const auto resembling = ResemblingFormulas(db, wanted, end);
+  if (!resembling) return too_late();
+  for (const Resembling& candidate : *resembling) {
     const auto enough = [&] {
       return best.size() >= most && best.back().similarity >= candidate.similarity;
     };
@@ -168,6 +190,7 @@ std::vector<SimilarLayout> SearchSimilar(SQLite::Database& db,
     row.bind(2, layout);
     std::vector<std::string> features;  // of the formula
     while (!enough() && row.executeStep()) {
+      if (Past(end)) return too_late();
       const std::string text = row.getColumn(2).getString();
       if (features.empty()) features = FeaturesOf(text);
       const std::int64_t id = row.getColumn(0).getInt64();

@@ -4,6 +4,7 @@
 
 #include <SQLiteCpp/Database.h>
 
+#include <chrono>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -18,9 +19,11 @@ namespace kompono::catalog {
                                                          std::string_view text,
                                                          std::int64_t limit);
 
-[[nodiscard]] std::vector<SimilarLayout> SearchSimilar(SQLite::Database& db,
-                                                       std::int64_t layout,
-                                                       std::int64_t limit);
+/// E0526 if not all formulas could be compared in time.
+[[nodiscard]] Parsed<std::vector<SimilarLayout>> SearchSimilar(SQLite::Database& db,
+                                                               std::int64_t layout,
+                                                               std::int64_t limit,
+                                                               std::chrono::milliseconds deadline);
 
 }  // namespace kompono::catalog
 

@@ -168,11 +168,13 @@ Parsed<std::vector<SearchHit>> Store::Search(std::string_view text, std::int64_t
   });
 }
 
-Parsed<std::vector<SimilarLayout>> Store::Similar(std::string_view key, std::int64_t limit) const {
+Parsed<std::vector<SimilarLayout>> Store::Similar(std::string_view key,
+                                                  std::int64_t limit,
+                                                  std::chrono::milliseconds deadline) const {
   return Guarded(impl_->Name(), [&]() -> Parsed<std::vector<SimilarLayout>> {
     const SQLite::Transaction snapshot(*impl_->db);
-    return FindLayout(*impl_->db, key, impl_->Name()).map([&](std::int64_t id) {
-      return SearchSimilar(*impl_->db, id, limit);
+    return FindLayout(*impl_->db, key, impl_->Name()).and_then([&](std::int64_t id) {
+      return SearchSimilar(*impl_->db, id, limit, deadline);
     });
   });
 }

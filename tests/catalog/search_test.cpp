@@ -126,6 +126,7 @@ TEST_F(SearchTest, SimilarLayoutsComeInOrder) {
     EXPECT_LE((*similar)[i].similarity, (*similar)[i - 1].similarity);
   EXPECT_EQ(store_.Similar("Knee mill", 2)->size(), 2U);
   EXPECT_EQ(CodeOf(store_.Similar("Lathe")), "E0512");
+  EXPECT_EQ(CodeOf(store_.Similar("Knee mill", 2, std::chrono::milliseconds(0))), "E0526");
 }
 
 TEST_F(SearchTest, TheTreeOfEveryFormulaIsKept) {

@@ -215,8 +215,10 @@ class Store {
                                                       std::int64_t limit = 20) const;
 
   /// Layouts whose structure resembles that of the layout `key`, best first, itself left out.
-  [[nodiscard]] Parsed<std::vector<SimilarLayout>> Similar(std::string_view key,
-                                                           std::int64_t limit = 20) const;
+  [[nodiscard]] Parsed<std::vector<SimilarLayout>> Similar(
+      std::string_view key,
+      std::int64_t limit = 20,
+      std::chrono::milliseconds deadline = std::chrono::seconds(5)) const;
 
   /// Everything, in an order that depends on the contents only: catalogs with the same layouts and
   /// evaluations give the same bytes, however they came together. Times and ids are left out.
