@@ -212,8 +212,7 @@ std::vector<NullDirection> DescribeNullSpace(const RankAnalysis& analysis,
     if (none != std::string::npos) last.words.replace(none, kNone.size(), "with hardly any effect");
     last.words += fmt::format(
         "; seen so weakly that it would be known to no better than {:.0f} tolerances, and "
-        "therefore "
-        "held at the smallest change",
+        "therefore held at the smallest change",
         sigma);
   }
   return directions;

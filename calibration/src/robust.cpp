@@ -20,7 +20,10 @@ constexpr int kMostRounds = 12;
 class RobustSolver {
  public:
   RobustSolver(LeastSquares problem, bool scale_known)
-      : problem_(std::move(problem)), all_(problem_.chosen), scale_known_(scale_known) {
+      : problem_(std::move(problem)),
+        all_(problem_.chosen),
+        max_iterations_(problem_.max_iterations),
+        scale_known_(scale_known) {
     for (const std::size_t k : all_) {
       const int count = problem_.rows->measurement(k).Numbers();
       numbers_.push_back(count);
@@ -160,7 +163,7 @@ class RobustSolver {
   }
 
   Fit FitWithout(const std::vector<std::size_t>& rejected, const Eigen::VectorXd& u) {
-    problem_.max_iterations = 100;
+    problem_.max_iterations = max_iterations_;
     problem_.weights.assign(problem_.rows->size(), 1.0);
     for (const std::size_t k : rejected) problem_.weights[k] = 0.0;
     return SolveLeastSquares(problem_, u);
@@ -171,6 +174,7 @@ class RobustSolver {
   std::vector<std::size_t> gross_;  ///< ascending
   std::vector<int> numbers_;
   int total_ = 0;
+  int max_iterations_;
   bool scale_known_;
 };
 

@@ -313,27 +313,26 @@ TEST(Identify, RefusesFewerNumbersThanUnknowns) {
       Contains(Field(&Diagnostic::message, "6 measured numbers cannot determine 9 parameters")));
 }
 
-TEST(Identify, SaysThatAnExactFitSaysNothing) {
+/// Hardly enough for a delta.
+MeasurementSet ThreePoints() {
   SimulateOptions options;
   options.count = 3;
   options.seed = 5;
   options.sigma_mm = 0.1;
   PrinterRegion(&options);
+  return Measured(Delta(), Delta().nominal(), options);
+}
+
+TEST(Identify, SaysThatAnExactFitSaysNothing) {
   IdentifyOptions follow;
   follow.weak_tolerances = 0.0;  // what three points hardly see is followed all the same
-  const MeasurementSet set = Measured(Delta(), Delta().nominal(), options);
-  const CalibrationReport report = Identify(Delta(), set, follow);
+  const CalibrationReport report = Identify(Delta(), ThreePoints(), follow);
   EXPECT_EQ(report.dof, 0) << RenderText(report);
   EXPECT_THAT(report.diagnostics, Contains(Field(&Diagnostic::code, "W0452")));
 }
 
 TEST(Identify, WhatIsSeenTooWeaklyIsHeldAndNamed) {
-  SimulateOptions options;
-  options.count = 3;
-  options.seed = 5;
-  options.sigma_mm = 0.1;
-  PrinterRegion(&options);
-  const CalibrationReport report = Identify(Delta(), Measured(Delta(), Delta().nominal(), options));
+  const CalibrationReport report = Identify(Delta(), ThreePoints());
   EXPECT_TRUE(report.ok());
   ASSERT_FALSE(report.unidentifiable.empty());
   EXPECT_TRUE(report.unidentifiable.back().weak);
