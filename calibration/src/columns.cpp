@@ -83,6 +83,7 @@ class HeaderReader {
     const std::string_view name = cell.text;
     if (name == "kind") return {Role::kKind};
     if (name == "held_out") return {Role::kHeldOut};
+    if (name == "approach") return {Role::kApproach};
     if (MayBeIgnored(name)) {
       ignored_.emplace_back(name);
       if (!first_ignored_) first_ignored_ = cell;
@@ -231,7 +232,7 @@ class HeaderReader {
         "c_deg",       "sigma_mm",        "sigma_rad",   "held_out", "target",
         "target_x_mm", "target_y_mm",     "target_z_mm", "centre",   "centre_x_mm",
         "centre_y_mm", "centre_z_mm",     "plane",       "plane_nx", "plane_ny",
-        "plane_nz",    "plane_offset_mm", "sheet"};
+        "plane_nz",    "plane_offset_mm", "sheet",       "approach"};
     for (const auto& [name, drive] : names_) {
       if (name.starts_with("drive.")) continue;
       const std::string unit = drives_[static_cast<std::size_t>(drive)].rotary ? "_deg" : "_mm";

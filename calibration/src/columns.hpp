@@ -17,6 +17,7 @@ enum class Role {
   kIgnored,
   kKind,
   kHeldOut,
+  kApproach,
   kValue,
   kPosition,        ///< index 0..2
   kRotationVector,  ///< index 0..2

@@ -85,6 +85,7 @@ class RowReader {
       ReadMeasured(cells, measurement);
       good_ = book_.Read(cells, &measurement) && good_;
     }
+    if (kind) ReadApproach(cells, &measurement);
     ReadSigmas(cells, measurement);
     ReadHeldOut(cells, measurement);
     if (!good_) return std::nullopt;
@@ -97,7 +98,8 @@ class RowReader {
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const Column& column = columns_.columns[i];
       const bool number = column.role != Role::kIgnored && column.role != Role::kKind &&
-                          column.role != Role::kHeldOut && column.role != Role::kFixtureName;
+                          column.role != Role::kHeldOut && column.role != Role::kApproach &&
+                          column.role != Role::kFixtureName;
       if (!number || row.cells[i].text.empty()) continue;
       cells.value[i] = NumberOf(row.cells[i], complaints_);
       if (cells.value[i]) {
@@ -334,6 +336,45 @@ class RowReader {
     }
   }
 
+  /// "+X", "-C"; also with the sign behind.
+  void ReadApproach(const RowCells& cells, Measurement* measurement) {
+    const int column = columns_.Find(Role::kApproach);
+    if (cells.Empty(column)) return;
+    const Cell& cell = CellOf(cells, Role::kApproach);
+    const auto refuse = [&](std::string message, std::string help) {
+      complaints_.Error(codes::kBadApproach.code, cell, std::move(message), std::move(help));
+      good_ = false;
+    };
+    constexpr std::string_view kAxes = "XYZABC";
+    const std::string_view text = cell.text;
+    const std::size_t sign = text.find_first_of("+-");
+    const std::size_t axis = text.find_first_of(kAxes);
+    if (text.size() != 2 || sign == std::string_view::npos || axis == std::string_view::npos) {
+      refuse(fmt::format("'{}' is no direction of approach", text),
+             "write +X or -X for a position approached along X of the datum, likewise Y, Z and the "
+             "turns A, B, C; nothing where it does not matter");
+      return;
+    }
+    const Approach approach{.axis = text[axis], .positive = text[sign] == '+'};
+    const MeasurementKind kind = measurement->kind;
+    const bool measured =
+        approach.rotary()
+            ? kind == MeasurementKind::kPose
+            : (kind == MeasurementKind::kHeight && approach.axis == 'Z') ||
+                  ((kind == MeasurementKind::kPosition || kind == MeasurementKind::kPose) &&
+                   measurement->position_mm[static_cast<std::size_t>(approach.component())]);
+    if (!measured) {
+      refuse(
+          fmt::format("the row was approached along {} and does not measure {}",
+                      approach.axis,
+                      approach.rotary() ? "an orientation"
+                                        : fmt::format("{}", static_cast<char>(approach.axis + 32))),
+          "leave the cell empty, or fill the axis' column");
+      return;
+    }
+    measurement->approach = approach;
+  }
+
   [[nodiscard]] const Cell& CellOf(const RowCells& cells, Role role) const {
     return cells.row->cells[static_cast<std::size_t>(columns_.Find(role))];
   }
@@ -348,9 +389,18 @@ class RowReader {
 };
 
 /// A row typed twice counts twice in the fit without anybody wanting it.
-void WarnOfRepeatedRows(std::string_view text, const Table& table, Complaints& complaints) {
+void WarnOfRepeatedRows(std::string_view text,
+                        const Table& table,
+                        const Columns& columns,
+                        Complaints& complaints) {
   std::map<std::string_view, int> seen;
+  const int approach = columns.Find(Role::kApproach);
   for (const TableRow& row : table.rows) {
+    // Approached again on purpose; a coarse instrument says the same.
+    const bool on_purpose = approach >= 0 &&
+                            static_cast<std::size_t>(approach) < row.cells.size() &&
+                            !row.cells[static_cast<std::size_t>(approach)].text.empty();
+    if (on_purpose) continue;
     const std::string_view whole = text.substr(row.begin, row.end - row.begin);
     const auto [first, is_new] = seen.emplace(whole, row.line);
     if (is_new) continue;
@@ -430,7 +480,7 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
     }
     set.fixtures = reader.TakeFixtures();
     GuessUnknownFixtures(machine, &set);
-    WarnOfRepeatedRows(text, table, complaints);
+    WarnOfRepeatedRows(text, table, columns, complaints);
   }
   if (!complaints.HasErrors() && options.check_units) {
     CheckUnits(machine, set, table.header, columns, complaints);

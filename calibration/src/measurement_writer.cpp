@@ -14,7 +14,7 @@ namespace {
 /// Which columns a set needs.
 struct Needed {
   bool value = false, position = false, rotation = false, second = false;
-  bool sigma_mm = false, sigma_rad = false, held_out = false;
+  bool sigma_mm = false, sigma_rad = false, held_out = false, approach = false;
   std::array<bool, 4> fixture{};  ///< by kind
 };
 
@@ -35,6 +35,7 @@ Needed ColumnsOf(const MeasurementSet& set) {
     needed.sigma_mm |= m.sigma_mm.has_value();
     needed.sigma_rad |= m.sigma_rad.has_value();
     needed.held_out |= m.held_out;
+    needed.approach |= m.approach.has_value();
     for (const int index : {m.target, m.fixture}) {
       if (index < 0) continue;
       needed.fixture[static_cast<std::size_t>(set.fixtures[static_cast<std::size_t>(index)].kind)] =
@@ -65,6 +66,7 @@ class Writer {
     if (needed_.sigma_mm) line += ",sigma_mm";
     if (needed_.sigma_rad) line += ",sigma_rad";
     if (needed_.held_out) line += ",held_out";
+    if (needed_.approach) line += ",approach";
     if (Needs(FixtureKind::kTarget)) line += ",target,target_x_mm,target_y_mm,target_z_mm";
     if (Needs(FixtureKind::kCentre)) line += ",centre,centre_x_mm,centre_y_mm,centre_z_mm";
     if (Needs(FixtureKind::kPlane)) line += ",plane,plane_nx,plane_ny,plane_nz,plane_offset_mm";
@@ -92,6 +94,10 @@ class Writer {
     if (needed_.sigma_mm) line += "," + Exact(m.sigma_mm);
     if (needed_.sigma_rad) line += "," + Exact(m.sigma_rad);
     if (needed_.held_out) line += m.held_out ? ",1" : ",0";
+    if (needed_.approach) {
+      line += m.approach ? fmt::format(",{}{}", m.approach->positive ? '+' : '-', m.approach->axis)
+                         : ",";
+    }
     line += FixtureCells(m, FixtureKind::kTarget) + FixtureCells(m, FixtureKind::kCentre) +
             FixtureCells(m, FixtureKind::kPlane) + FixtureCells(m, FixtureKind::kSheet);
     line += Readings(m.readings);

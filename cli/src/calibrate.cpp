@@ -220,8 +220,51 @@ ordered_json FoldsJson(const std::vector<calibration::FoldedError>& folded) {
   return out;
 }
 
+/// Keys with the unit in their names.
+ordered_json PositioningJson(const calibration::PositioningFigures& figures, bool rotary) {
+  const std::string unit = rotary ? "_deg" : "_mm";
+  ordered_json out;
+  if (const auto& f = figures.bidirectional) {
+    out["bidirectional"] = {{"a" + unit, Outward(f->accuracy, rotary)},
+                            {"r" + unit, Outward(f->repeatability, rotary)},
+                            {"b" + unit, Outward(f->reversal, rotary)},
+                            {"mean_b" + unit, Outward(f->mean_reversal, rotary)},
+                            {"e" + unit, Outward(f->systematic, rotary)},
+                            {"m" + unit, Outward(f->mean_deviation, rotary)}};
+  }
+  for (const auto& [name, side] :
+       {std::pair{"positive", &figures.positive}, std::pair{"negative", &figures.negative}}) {
+    if (!*side) continue;
+    out[name] = {{"a" + unit, Outward((*side)->accuracy, rotary)},
+                 {"r" + unit, Outward((*side)->repeatability, rotary)},
+                 {"e" + unit, Outward((*side)->systematic, rotary)}};
+  }
+  return out;
+}
+
+ordered_json AxisTestJson(const calibration::AxisTest& test) {
+  const std::string unit = test.rotary() ? "_deg" : "_mm";
+  ordered_json out{{"axis", std::string(1, test.axis)},
+                   {"at", test.line},
+                   {"from" + unit, Outward(test.from, test.rotary())},
+                   {"to" + unit, Outward(test.to, test.rotary())},
+                   {"targets", test.targets},
+                   {"rows", test.rows},
+                   {"first_row", test.first_row},
+                   {"missing", test.missing}};
+  if (!test.missing.empty()) return out;
+  out["before"] = PositioningJson(test.before, test.rotary());
+  out["after"] = PositioningJson(test.after, test.rotary());
+  return out;
+}
+
 ordered_json IsoJson(const calibration::IsoFigures& figures) {
-  ordered_json out{{"iso_9283", ordered_json::array()}, {"iso_230_4", ordered_json::array()}};
+  ordered_json out{{"iso_230_2", ordered_json::array()},
+                   {"iso_9283", ordered_json::array()},
+                   {"iso_230_4", ordered_json::array()}};
+  for (const calibration::AxisTest& test : figures.axes) {
+    out["iso_230_2"].push_back(AxisTestJson(test));
+  }
   for (const calibration::RepeatedPose& p : figures.poses) {
     out["iso_9283"].push_back({{"first_row", p.first_row},
                                {"repeats", p.repeats},

@@ -95,6 +95,20 @@ TEST(MeasurementFiles, NeedNoKindWhenTheFilledCellsLeaveNoDoubt) {
                           MeasurementKind::kPose));
 }
 
+TEST(MeasurementFiles, MustNotGiveAnApproachThatTheyDoNotMeasure) {
+  const auto set = ParseMeasurements(
+      "X,Y,Z,C_deg,x_mm,y_mm,approach\n1,2,3,0,1,2,+Q\n1,2,3,0,1,2,-Z\n1,2,3,0,1,2,C+\n",
+      "m.csv",
+      Mill());
+  ASSERT_FALSE(set);
+  const std::string said = RenderAll(set.error(), {});
+  EXPECT_THAT(said, HasSubstr("'+Q' is no direction of approach"));
+  EXPECT_THAT(said, HasSubstr("the row was approached along Z and does not measure z"));
+  EXPECT_THAT(said,
+              HasSubstr("the row was approached along C and does not measure an orientation"));
+  EXPECT_THAT(said, HasSubstr("E0475"));
+}
+
 TEST(MeasurementFiles, OfAHexapodLoadAndTellWhatTheyPassOver) {
   const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
   Diagnostics notes;

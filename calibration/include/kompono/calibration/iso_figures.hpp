@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "kompono/calibration/measurements.hpp"
+#include "kompono/calibration/positioning.hpp"
 #include "kompono/kinematics/machine.hpp"
 
 /// Figures as the standards define them, where the rows of a file allow them.
@@ -30,10 +31,23 @@ struct CircularRun {
   double radial_most_before_mm = 0.0, radial_least_before_mm = 0.0;  ///< Fmax, Fmin
 };
 
+/// ISO 230-2, one axis of the datum along one line: rows whose direction of approach is known.
+struct AxisTest {
+  char axis = 'X';   ///< X, Y, Z, or A, B, C
+  std::string line;  ///< where the other coordinates stood: "Y 0, Z 100"
+  int first_row = 0, rows = 0, targets = 0;
+  double from = 0.0, to = 0.0;       ///< commanded positions, mm or rad
+  std::vector<std::string> missing;  ///< what the standard asks for; then there are no figures
+  PositioningFigures before;         ///< against what the nominal geometry predicts
+  PositioningFigures after;          ///< against what the identified one predicts
+  [[nodiscard]] bool rotary() const { return axis < 'X'; }
+};
+
 struct IsoFigures {
   std::vector<RepeatedPose> poses;  ///< of at least three repeats
   std::vector<CircularRun> runs;    ///< of at least eight rows
-  [[nodiscard]] bool empty() const { return poses.empty() && runs.empty(); }
+  std::vector<AxisTest> axes;
+  [[nodiscard]] bool empty() const { return poses.empty() && runs.empty() && axes.empty(); }
 };
 
 /// `identified`: θ with the identified numbers, without fixtures.
@@ -41,7 +55,7 @@ struct IsoFigures {
                                       const MeasurementSet& set,
                                       const Eigen::VectorXd& identified);
 
-/// Two tables; empty if there is nothing to tell.
+/// Up to three tables; empty if there is nothing to tell.
 [[nodiscard]] std::string RenderIso(const IsoFigures& figures);
 
 }  // namespace kompono::calibration

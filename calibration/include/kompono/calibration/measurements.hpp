@@ -49,6 +49,15 @@ struct Fixture {
   bool known = true;
 };
 
+/// How a row's position was approached: along which axis of the datum, and in which direction.
+struct Approach {
+  char axis = 'X';  ///< X, Y, Z, or A, B, C for a turn about them
+  bool positive = true;
+  [[nodiscard]] bool rotary() const { return axis < 'X'; }
+  /// 0, 1, 2 for the datum's x, y, z.
+  [[nodiscard]] int component() const { return rotary() ? axis - 'A' : axis - 'X'; }
+};
+
 /// One row. mm, rad.
 struct Measurement {
   MeasurementKind kind = MeasurementKind::kPosition;
@@ -61,9 +70,10 @@ struct Measurement {
   std::optional<double> sigma_rad;  ///< standard deviation of each component of the rotation vector
   int target = -1;                  ///< into the set's fixtures; -1: the tool point itself
   int fixture = -1;                 ///< centre, plane or sheet
-  bool held_out = false;            ///< not used in the fit, only to judge it
-  int row = 0;                      ///< counted from 1 in the file's data rows
-  int line = 0;                     ///< in `MeasurementSet::text`; 0 if there is no text
+  std::optional<Approach> approach;
+  bool held_out = false;  ///< not used in the fit, only to judge it
+  int row = 0;            ///< counted from 1 in the file's data rows
+  int line = 0;           ///< in `MeasurementSet::text`; 0 if there is no text
 
   /// How many numbers it gives to the fit.
   [[nodiscard]] int Numbers() const;
