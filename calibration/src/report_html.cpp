@@ -229,15 +229,22 @@ std::string Doubts(const CalibrationReport& report) {
 
 }  // namespace
 
-std::string RenderHtml(const CalibrationReport& report, std::string_view title) {
+std::string RenderHtml(const CalibrationReport& report,
+                       std::string_view title,
+                       const std::vector<PageSection>& more) {
   CalibrationReport summary = report;
   summary.parameters.clear();
   summary.statistics.clear();
   summary.unidentifiable.clear();
   summary.correlated.clear();
+  std::string sections;
+  for (const PageSection& section : more) {
+    sections +=
+        fmt::format("<h2>{}</h2>\n<pre>{}</pre>\n", Escaped(section.title), Escaped(section.text));
+  }
   return fmt::format(fmt::runtime(kHead), Escaped(title)) + "<pre>" + Escaped(RenderText(summary)) +
          "</pre>\n" + ErrorTable(report) + Histogram(report) + RowChart(report) +
-         ParameterTable(report) + Doubts(report) + "</body></html>\n";
+         ParameterTable(report) + sections + Doubts(report) + "</body></html>\n";
 }
 
 }  // namespace kompono::calibration

@@ -289,6 +289,7 @@ std::optional<ExitCode> WriteFiles(Session& session,
                                    const CalibrationReport& report,
                                    const MeasurementFiles& files,
                                    const ordered_json& document,
+                                   const std::vector<calibration::PageSection>& sections,
                                    const Options& options) {
   if (!report.ok()) return std::nullopt;  // stdout has said why
   if (!options.report.empty()) {
@@ -297,8 +298,8 @@ std::optional<ExitCode> WriteFiles(Session& session,
     session.console.Say(options.report + " written");
   }
   if (!options.html.empty()) {
-    const std::string page =
-        calibration::RenderHtml(report, fmt::format("{}: {}", options.file, files.set.file));
+    const std::string page = calibration::RenderHtml(
+        report, fmt::format("{}: {}", options.file, files.set.file), sections);
     if (const auto failure = WriteFileAside(options.html, page, options.force))
       return session.Refuse(*failure);
     session.console.Say(options.html + " written");
@@ -353,7 +354,8 @@ std::optional<ExitCode> WriteResidualMap(Session& session,
                                          const MeasurementFiles& files,
                                          const IdentifyOptions& identify,
                                          const Options& options,
-                                         ordered_json* document) {
+                                         ordered_json* document,
+                                         std::vector<calibration::PageSection>* sections) {
   if (options.residual_map.empty() || !report.ok()) return std::nullopt;
   const Parsed<calibration::MappedResiduals> mapped =
       calibration::MapResiduals(machine, files.set, report, identify, {.seed = options.seed});
@@ -366,6 +368,7 @@ std::optional<ExitCode> WriteResidualMap(Session& session,
          {"validated", GainJson(judged.validated)}};
   if (judged.held_out) out["held_out"] = GainJson(*judged.held_out);
   if (!session.json) session.console.Out(calibration::RenderText(judged));
+  sections->push_back({"Residual map", calibration::RenderText(judged)});
   if (!judged.kept) {
     session.console.Report({{.severity = Severity::kWarning,
                              .code = calibration::codes::kMapRefused.code,
@@ -406,9 +409,13 @@ ExitCode Identify(Session& session,
     document["klipper"] = ComparisonJson(*comparison);
   }
   calibration::IsoFigures iso;
+  std::vector<calibration::PageSection> sections;
   if (report.ok()) {
     iso = calibration::IsoFiguresOf(machine, files.set, report.theta_after);
-    if (!iso.empty()) document["iso"] = IsoJson(iso);
+    if (!iso.empty()) {
+      document["iso"] = IsoJson(iso);
+      sections.push_back({"Figures of the standards", calibration::RenderIso(iso)});
+    }
   }
   if (!session.json) {
     session.console.Out(calibration::RenderText(report, {.residuals = options.residuals}));
@@ -421,10 +428,10 @@ ExitCode Identify(Session& session,
   }
   if (const auto failed = WriteMap(session, machine, report, files, options, &document))
     return *failed;
-  if (const auto failed =
-          WriteResidualMap(session, machine, report, files, identify, options, &document))
+  if (const auto failed = WriteResidualMap(
+          session, machine, report, files, identify, options, &document, &sections))
     return *failed;
-  const auto failed = WriteFiles(session, machine, report, files, document, options);
+  const auto failed = WriteFiles(session, machine, report, files, document, sections, options);
   if (failed) return *failed;
   if (session.json) session.console.Json(std::move(document));
   return ExitOf(report);

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include "kompono/calibration/codes.hpp"
 #include "kompono/calibration/residual_map.hpp"
 
 namespace kompono::cli {
@@ -118,6 +119,7 @@ Parsed<Program> Grid(const Machine& machine, int count) {
 struct Corrected {
   std::string csv;
   int rows = 0, failed = 0;
+  int beyond_map = 0, first_beyond_map = 0;  ///< rows outside the map's grid, counted from 1
   double largest_mm = 0.0;
 };
 
@@ -193,6 +195,9 @@ Corrected Correct(const Machine& nominal,
       line += "," + Fixed(Outward(wanted.drives[i], rotary)) + "," +
               Fixed(Outward(wanted.drives[i] - told.drives[i], rotary));
     }
+    if (map != nullptr && !map->Covers(real, wanted.coordinates) && out.beyond_map++ == 0) {
+      out.first_beyond_map = out.rows;
+    }
     out.largest_mm = std::max(out.largest_mm, (there.X_WT.p - told.X_WT.p).norm());
     out.csv += line + ",ok\n";
   }
@@ -237,12 +242,24 @@ ExitCode Run(Session& session, const Options& options) {
     map = std::move(*parsed);
   }
   const Corrected corrected = Correct(*nominal, *real, map ? &*map : nullptr, *program);
+  if (corrected.beyond_map > 0) {
+    session.console.Report(
+        {{.severity = Severity::kWarning,
+          .code = calibration::codes::kBeyondMap.code,
+          .file = options.residual_map,
+          .message = fmt::format("{} of {} lie outside the map, the first is row {}",
+                                 corrected.beyond_map,
+                                 Counted(static_cast<std::size_t>(corrected.rows), "pose"),
+                                 corrected.first_beyond_map),
+          .help = "there the map's border is used; measure where the program goes"}});
+  }
   if (!options.out.empty()) {
     if (const auto failure = WriteFileAside(options.out, corrected.csv, options.force))
       return session.Refuse(*failure);
   }
   if (session.json) {
     nlohmann::ordered_json out{{"rows", corrected.rows},
+                               {"beyond_map", corrected.beyond_map},
                                {"failed", corrected.failed},
                                {"largest_correction_mm", corrected.largest_mm}};
     if (options.out.empty()) {
