@@ -304,4 +304,11 @@ Parsed<Selection> SelectUnknowns(const kinematics::Machine& machine,
   return Selector(machine, set, options).Select();
 }
 
+Diagnostics JudgeOptions(const kinematics::Machine& machine,
+                         const MeasurementSet& set,
+                         const IdentifyOptions& options) {
+  Parsed<Selection> selection = SelectUnknowns(machine, set, options);
+  return selection ? Diagnostics{} : std::move(selection.error());
+}
+
 }  // namespace kompono::calibration

@@ -2,6 +2,8 @@
 // kompono check: every fault of every file. Plugin code runs for the geometry of layouts whose text
 // is good, unless --no-code is given, and for measurements, whose units are judged by what the
 // machine predicts.
+#include "calibration_files.hpp"
+#include "campaign.hpp"
 #include "codes.hpp"
 #include "files.hpp"
 #include "session.hpp"
@@ -13,6 +15,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "kompono/calibration/identification.hpp"
 #include "kompono/calibration/measurements.hpp"
 #include "kompono/plugin/description.hpp"
 #include "kompono/synthesis/candidate.hpp"
@@ -27,6 +30,8 @@ constexpr const char* kExamples =
     "  kompono check machine.toml                             a layout\n"
     "  kompono check layouts/machines/*.toml                  all of them, all faults in one run\n"
     "  kompono check --layout machine.toml points.csv         measurements of that machine\n"
+    "  kompono check campaign.toml                            a description of measurements, with\n"
+    "                                                         its layout and its files\n"
     "  kompono check machine.toml --no-code                   the text only\n"
     "  kompono check plugins/lambda/plugin.toml               a plugin's sidecar";
 
@@ -36,7 +41,7 @@ struct Options {
   bool no_code = false;
 };
 
-enum class Kind { kUnknown, kLayout, kStudy, kMeasurements, kSidecar };
+enum class Kind { kUnknown, kLayout, kStudy, kMeasurements, kCampaign, kSidecar };
 
 std::string_view Name(Kind kind) {
   switch (kind) {
@@ -46,6 +51,8 @@ std::string_view Name(Kind kind) {
       return "study";
     case Kind::kMeasurements:
       return "measurements";
+    case Kind::kCampaign:
+      return "measurement description";
     case Kind::kSidecar:
       return "plugin";
     case Kind::kUnknown:
@@ -70,6 +77,7 @@ Kind KindOf(const std::filesystem::path& file, std::string_view text) {
   if (file.extension() == ".csv") return Kind::kMeasurements;
   if (file.filename() == "plugin.toml") return Kind::kSidecar;
   if (HasKey(text, "study")) return Kind::kStudy;
+  if (HasKey(text, "measurements")) return Kind::kCampaign;
   if (file.extension() == ".toml") return Kind::kLayout;
   if (HasKey(text, "contract")) return Kind::kSidecar;
   if (HasKey(text, "formula") || HasKey(text, "kompono")) return Kind::kLayout;
@@ -100,12 +108,42 @@ void Take(const Parsed<T>& parsed, Diagnostics& diagnostics) {
 }
 
 /// The text, and if that is good what the plugins say of the geometry.
-void JudgeLayout(Session& session, std::string_view text, bool run_code, Verdict& verdict) {
-  Parsed<layout::Layout> layout =
-      layout::ParseLayout(text, verdict.file, session.registry(), &verdict.diagnostics);
+std::optional<kinematics::Machine> JudgeLayout(Session& session,
+                                               std::string_view text,
+                                               const std::string& file,
+                                               bool run_code,
+                                               Diagnostics& diagnostics) {
+  Parsed<layout::Layout> layout = layout::ParseLayout(text, file, session.registry(), &diagnostics);
+  Take(layout, diagnostics);
+  if (!layout || !run_code) return std::nullopt;
+  Parsed<kinematics::Machine> machine =
+      kinematics::Machine::Build(std::move(*layout), session.registry());
+  Take(machine, diagnostics);
+  if (!machine) return std::nullopt;
+  return std::move(*machine);
+}
+
+/// The text, the layout that it names, every file with it, and at last the patterns of its fit.
+void JudgeCampaign(Session& session, std::string_view text, bool run_code, Verdict& verdict) {
+  const Parsed<Campaign> campaign = ReadCampaign(text, verdict.file);
+  Take(campaign, verdict.diagnostics);
+  if (!campaign) return;
+  const Parsed<std::string> layout = ReadWhole(campaign->layout);
   Take(layout, verdict.diagnostics);
-  if (layout && run_code) {
-    Take(kinematics::Machine::Build(std::move(*layout), session.registry()), verdict.diagnostics);
+  std::optional<kinematics::Machine> machine;
+  if (layout) {
+    machine = JudgeLayout(session, *layout, campaign->layout, run_code, verdict.diagnostics);
+  }
+  if (!machine) return;
+  const Parsed<MeasurementFiles> files =
+      ReadMeasurementFiles(campaign->files, *machine, {}, verdict.diagnostics);
+  Take(files, verdict.diagnostics);
+  if (!files) return;
+  Diagnostics patterns = calibration::JudgeOptions(
+      *machine, files->set, {.free = campaign->free, .lock = campaign->lock});
+  for (Diagnostic& problem : patterns) {
+    problem.file = verdict.file;  // they stand here, not in the layout
+    verdict.diagnostics.push_back(std::move(problem));
   }
 }
 
@@ -134,13 +172,16 @@ Verdict Judge(Session& session,
   verdict.kind = KindOf(file, *text);
   switch (verdict.kind) {
     case Kind::kLayout:
-      JudgeLayout(session, *text, run_code, verdict);
+      (void)JudgeLayout(session, *text, file, run_code, verdict.diagnostics);
       break;
     case Kind::kStudy:
       JudgeStudy(session, *text, verdict);
       break;
     case Kind::kSidecar:
       Take(plugin::ParseSidecar(*text, file), verdict.diagnostics);
+      break;
+    case Kind::kCampaign:
+      JudgeCampaign(session, *text, run_code, verdict);
       break;
     case Kind::kMeasurements:
       if (machine) {

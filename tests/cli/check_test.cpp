@@ -69,6 +69,49 @@ TEST_F(Check, MeasurementsNeedTheirLayout) {
   EXPECT_EQ(Run({"check", "--layout", layout, "p.csv"}).code, 1);
 }
 
+TEST_F(Check, ADescriptionOfMeasurementsIsJudgedWithItsFiles) {
+  const std::string layout = Machine("knee_mill");
+  ASSERT_EQ(Run({"measure", layout, "--points", "12", "-o", "p.csv"}).code, 0);
+  Write("campaign.toml",
+        "measurements = 1\nlayout = '" + layout +
+            "'\n[[file]]\ncsv = 'p.csv'\n[fit]\nfree = ['*.zero']\n");
+  const Outcome good = Run({"check", "campaign.toml"});
+  EXPECT_EQ(good.code, 0) << good.err;
+  EXPECT_EQ(good.out, "campaign.toml: ok\n");
+  EXPECT_EQ(Json({"check", "campaign.toml"})["files"][0]["kind"], "measurement description");
+  EXPECT_THAT(Files(), testing::ElementsAre("campaign.toml", "p.csv"));
+}
+
+TEST_F(Check, EveryFaultOfADescriptionIsNamed) {
+  const std::string layout = Machine("knee_mill");
+  Write("words.toml",
+        "measurements = 2\nlayot = 'x.toml'\n[[file]]\ncsv = 'p.csv'\nsigma_mm = -1\n");
+  const Outcome words = Run({"check", "words.toml"});
+  EXPECT_EQ(words.code, 1);
+  EXPECT_EQ(words.out, "words.toml: 4 errors\n") << words.err;
+  EXPECT_THAT(words.err, HasSubstr("words.toml:2:1: error: unknown key 'layot' [E0468]"));
+  EXPECT_THAT(words.err, HasSubstr("words.toml:5:12: error: 'sigma_mm' must be a number greater"));
+
+  ASSERT_EQ(Run({"measure", layout, "--points", "12", "-o", "p.csv"}).code, 0);
+  Write("q.csv", Read("p.csv") + "1,2\n");
+  const std::string head = "measurements = 1\nlayout = '" + layout + "'\n[[file]]\ncsv = ";
+  Write("rows.toml", head + "'q.csv'\n[[file]]\ncsv = 'nowhere.csv'\n");
+  const Outcome rows = Run({"check", "rows.toml"});
+  EXPECT_EQ(rows.code, 1);
+  EXPECT_THAT(rows.err, HasSubstr("q.csv:"));
+  EXPECT_THAT(rows.err, HasSubstr("the row has 2 cells"));
+  EXPECT_THAT(rows.err, HasSubstr("nowhere.csv: error: cannot be read"));
+  Write("patterns.toml", head + "'p.csv'\n[fit]\nfree = ['X.zerro']\n");
+  const Outcome patterns = Run({"check", "patterns.toml"});
+  EXPECT_EQ(patterns.code, 1);
+  EXPECT_THAT(patterns.err, HasSubstr("patterns.toml: error: "));
+  EXPECT_THAT(patterns.err, HasSubstr("[E0431]"));
+  Write("lost.toml", "measurements = 1\nlayout = 'lost_machine.toml'\n[[file]]\ncsv = 'p.csv'\n");
+  const Outcome lost = Run({"check", "lost.toml"});
+  EXPECT_EQ(lost.code, 1);
+  EXPECT_THAT(lost.err, HasSubstr("lost_machine.toml: error: cannot be read"));
+}
+
 TEST_F(Check, SidecarsAndUnknownFiles) {
   EXPECT_EQ(Run({"check", Source("plugins/lambda/plugin.toml")}).code, 0);
   Write("plugin.toml", "kompono = 1\nid = 'x'\n");

@@ -18,7 +18,8 @@ struct PageSection {
 /// One page without outside parts: what was found in words, errors before and after as a table and
 /// as a histogram, every row's error before and after, the numbers with their deviations, and what
 /// cannot be told. `title`: machine and measurements; it is escaped.
-[[nodiscard]] std::string RenderHtml(const CalibrationReport& report, std::string_view title,
+[[nodiscard]] std::string RenderHtml(const CalibrationReport& report,
+                                     std::string_view title,
                                      const std::vector<PageSection>& more = {});
 
 }  // namespace kompono::calibration

@@ -219,6 +219,12 @@ struct CalibrationReport {
                                      const Eigen::VectorXd& theta,
                                      const IdentifyOptions& options = {});
 
+/// What is wrong with the options themselves for this machine and these rows, such as patterns that
+/// name no number (E0431 to E0435); nothing is solved.
+[[nodiscard]] Diagnostics JudgeOptions(const kinematics::Machine& machine,
+                                       const MeasurementSet& set,
+                                       const IdentifyOptions& options);
+
 }  // namespace kompono::calibration
 
 #endif  // KOMPONO_CALIBRATION_IDENTIFICATION_HPP_
