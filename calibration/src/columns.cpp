@@ -81,6 +81,13 @@ class HeaderReader {
  private:
   Column Understand(const Cell& cell) {
     const std::string_view name = cell.text;
+    if (name.empty()) {
+      complaints_.Error(codes::kUnknownColumn.code,
+                        cell,
+                        "a column without a name",
+                        "name it, or take away the separator at the end of the lines");
+      return {};
+    }
     if (name == "kind") return {Role::kKind};
     if (name == "held_out") return {Role::kHeldOut};
     if (name == "approach") return {Role::kApproach};

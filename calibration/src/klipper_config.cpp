@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kompono/calibration/klipper_config.hpp"
 
+#include "table.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -235,6 +236,9 @@ class ConfigReader {
 }  // namespace
 
 Parsed<KlipperConfig> ReadKlipperConfig(std::string_view text, std::string_view file) {
+  if (Diagnostics refused = JudgeText(text, file); !refused.empty()) {
+    return tl::unexpected(std::move(refused));
+  }
   return ConfigReader(text, file).Read();
 }
 

@@ -450,6 +450,9 @@ Parsed<MeasurementSet> ParseMeasurements(std::string_view text,
                                          const kinematics::Machine& machine,
                                          const ReadOptions& options,
                                          Diagnostics* notes) {
+  if (Diagnostics refused = JudgeText(text, file); !refused.empty()) {
+    return tl::unexpected(std::move(refused));
+  }
   if (IsKlipperDelta(text)) return ImportKlipperDelta(text, file, machine, notes);
   Complaints complaints(text, file);
   const Table table = SplitTable(text);

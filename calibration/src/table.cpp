@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "kompono/calibration/codes.hpp"
 
 namespace kompono::calibration {
 namespace {
@@ -52,6 +55,27 @@ char SeparatorOf(std::string_view header) {
 }
 
 }  // namespace
+
+Diagnostics JudgeText(std::string_view text, std::string_view file) {
+  const auto refused = [file](std::string message, std::string help) {
+    return Diagnostics{{.code = codes::kNoText.code,
+                        .file = std::string(file),
+                        .message = std::move(message),
+                        .help = std::move(help)}};
+  };
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return refused("the file is UTF-16", "save it as UTF-8: \"CSV UTF-8\" in spreadsheets");
+  }
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    return refused(fmt::format("byte {} is zero: the file is no text", zero + 1),
+                   "give the file as text in UTF-8, not the program's own format");
+  }
+  if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos) {
+    return refused("the lines end with a carriage return alone",
+                   "save the file with the line ends of Unix or Windows");
+  }
+  return {};
+}
 
 Table SplitTable(std::string_view text) {
   Table table;

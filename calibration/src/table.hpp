@@ -31,6 +31,10 @@ struct Table {
   char separator = ',';
 };
 
+/// E0477 for what no line of can be read: UTF-16 and other files with zero bytes, and lines that
+/// end with a carriage return alone; empty for texts.
+[[nodiscard]] Diagnostics JudgeText(std::string_view text, std::string_view file);
+
 /// Lines that are empty or start with '#' are passed over; the separator is the one of , ; tab that
 /// the header has most of. The header has no cells if the text has none. Views point into `text`.
 [[nodiscard]] Table SplitTable(std::string_view text);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -26,8 +27,33 @@ constexpr double kFarFactor = 6.0;  ///< times the median
 constexpr double kStraight = 1e-4;  ///< points on a line: second over first singular value
 constexpr double kExactMm = 1e-6;   ///< smaller errors are rounding
 
+/// "1,5 2,5 3,5": blanks between numbers whose every comma stands between digits, one in each.
+bool BlanksAndDecimalCommas(std::string_view line) {
+  const auto digit = [&line](std::size_t at) {
+    return at < line.size() && std::isdigit(static_cast<unsigned char>(line[at])) != 0;
+  };
+  int words = 0;
+  bool commas = false;
+  for (std::size_t begin = line.find_first_not_of(" \r"); begin != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(" \r", begin), line.size());
+    const std::string_view word = line.substr(begin, end - begin);
+    const std::size_t comma = word.find(',');
+    if (comma != std::string_view::npos) {
+      const bool decimal = comma > 0 && digit(begin + comma - 1) && digit(begin + comma + 1) &&
+                           word.find_first_of(",.", comma + 1) == std::string_view::npos &&
+                           word.find('.') == std::string_view::npos;
+      if (!decimal) return false;
+      commas = true;
+    }
+    ++words;
+    begin = line.find_first_not_of(" \r", end);
+  }
+  return commas && words >= 3;
+}
+
 std::vector<std::string> Words(std::string_view line) {
-  const bool decimal_commas = line.find_first_of(";\t") != std::string_view::npos;
+  const bool decimal_commas =
+      line.find_first_of(";\t") != std::string_view::npos || BlanksAndDecimalCommas(line);
   const std::string_view separators = decimal_commas ? " \t;\r" : " \t,\r";
   std::vector<std::string> words;
   std::size_t begin = line.find_first_not_of(separators);
@@ -276,6 +302,9 @@ void WarnOfOtherFrame(const kinematics::Machine& machine,
 Parsed<std::vector<TrackerPoint>> ReadTrackerPoints(std::string_view text,
                                                     std::string_view file,
                                                     double mm_per_unit) {
+  if (Diagnostics refused = JudgeText(text, file); !refused.empty()) {
+    return tl::unexpected(std::move(refused));
+  }
   Complaints complaints(text, file);
   std::vector<TrackerPoint> points;
   int number = 0;
@@ -321,6 +350,9 @@ Parsed<TrackerMeasurements> JoinTracker(const std::vector<TrackerPoint>& points,
                                         std::string_view readings_file,
                                         const kinematics::Machine& machine,
                                         const TrackerOptions& options) {
+  if (Diagnostics refused = JudgeText(readings_text, readings_file); !refused.empty()) {
+    return tl::unexpected(std::move(refused));
+  }
   Parsed<std::string> joined = Joiner(points, points_file, readings_text, readings_file).Join();
   if (!joined) return tl::unexpected(std::move(joined.error()));
   const std::string file = fmt::format("{} with {}", readings_file, points_file);

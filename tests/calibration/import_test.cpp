@@ -174,6 +174,25 @@ class Tracker : public ::testing::Test {
   Pose<double> X_WL_;
 };
 
+/// One file, as instruments of several countries write it.
+TEST(TrackerPoints, AreTheSameWithEverySeparator) {
+  for (const char* text : {"1.5 2.25 -3.5\n4 5 6\n",
+                           "1.5, 2.25, -3.5\r\n4, 5, 6\r\n",
+                           "1.5,2.25,-3.5\n4,5,6\n",
+                           "1,5 2,25 -3,5\n4 5 6\n",
+                           "1,5;2,25;-3,5;\n4;5;6;\n",
+                           "1,5\t2,25\t-3,5\n4\t5\t6\n",
+                           "P1 1,5 2,25 -3,5\nP2 4,0 5,0 6,0\n",
+                           "P1,1.5,2.25,-3.5\nP2,4,5,6\n"}) {
+    SCOPED_TRACE(text);
+    const auto points = ReadTrackerPoints(text, "points.txt", 1.0);
+    ASSERT_TRUE(points);
+    ASSERT_EQ(points->size(), 2U);
+    EXPECT_EQ((*points)[0].p_mm, Eigen::Vector3d(1.5, 2.25, -3.5));
+    EXPECT_EQ((*points)[1].p_mm, Eigen::Vector3d(4.0, 5.0, 6.0));
+  }
+}
+
 TEST_F(Tracker, PointsAreJoinedByNameAndAlignedWithTheMachine) {
   const TrackerMeasurements joined = Good(Join(Points(), true));
   ASSERT_EQ(joined.set.measurements.size(), set_.measurements.size());

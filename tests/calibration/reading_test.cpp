@@ -109,6 +109,25 @@ TEST(MeasurementFiles, MustNotGiveAnApproachThatTheyDoNotMeasure) {
   EXPECT_THAT(said, HasSubstr("E0475"));
 }
 
+/// What comes out of spreadsheets and instruments and is no table yet: one complaint each.
+TEST(MeasurementFiles, ThatAreNoTextOfLinesAreNamed) {
+  const auto complaint = [](std::string_view text) {
+    const auto set = ParseMeasurements(text, "m.csv", Mill());
+    return set ? std::string("accepted") : RenderAll(set.error(), {});
+  };
+  EXPECT_EQ(complaint(std::string("\xFF\xFEX\0,\0", 6)),
+            "m.csv: error: the file is UTF-16 [E0477]\n"
+            "  help: save it as UTF-8: \"CSV UTF-8\" in spreadsheets\n1 error\n");
+  EXPECT_EQ(complaint(std::string("X,Y\n1,\0002\n", 9)),
+            "m.csv: error: byte 7 is zero: the file is no text [E0477]\n"
+            "  help: give the file as text in UTF-8, not the program's own format\n1 error\n");
+  EXPECT_EQ(complaint("X,Y,Z,C_deg,x_mm\r1,2,3,0,1\r"),
+            "m.csv: error: the lines end with a carriage return alone [E0477]\n"
+            "  help: save the file with the line ends of Unix or Windows\n1 error\n");
+  EXPECT_THAT(complaint("X,Y,Z,C_deg,x_mm,y_mm,\n1,2,3,0,1,2,\n"),
+              HasSubstr("m.csv:1:23: error: a column without a name [E0403]"));
+}
+
 TEST(MeasurementFiles, OfAHexapodLoadAndTellWhatTheyPassOver) {
   const kinematics::Machine machine = MachineOf("machines/hexapod_reference.toml");
   Diagnostics notes;

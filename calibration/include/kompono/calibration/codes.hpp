@@ -74,6 +74,7 @@ inline constexpr CodeTitle kMapRows{"E0470", "too few rows for a residual map"};
 inline constexpr CodeTitle kBadMap{"E0471", "wrong residual map"};
 inline constexpr CodeTitle kMapRefused{"W0472", "residual map that does not help"};
 inline constexpr CodeTitle kBeyondMap{"W0476", "program that leaves the residual map"};
+inline constexpr CodeTitle kNoText{"E0477", "file that is no text of lines"};
 inline constexpr CodeTitle kBadApproach{"E0475", "direction of approach that cannot be used"};
 inline constexpr CodeTitle kHeldOutWorse{"W0459", "held-out rows that became worse"};
 }  // namespace codes
