@@ -288,7 +288,7 @@ ZoneMap MapZone(const analysis::PoseJudge& judge,
   analysis::PoseBlock block(judge);
   std::vector<analysis::DexterityBlock> dexterity;
   for (std::size_t m = 0; m < judge.mechanisms().size(); ++m)
-    dexterity.emplace_back(judge, m, lengths_mm[m]);
+    dexterity.emplace_back(judge, m, lengths_mm[m], true);
   std::vector<double> sum(dexterity.size(), 0.0);
   for (std::uint64_t first = 0; first < grid.size(); first += analysis::PoseBlock::kCapacity) {
     const auto count = static_cast<std::size_t>(
@@ -298,6 +298,13 @@ ZoneMap MapZone(const analysis::PoseJudge& judge,
     for (std::size_t m = 0; m < dexterity.size(); ++m) dexterity[m].Evaluate(block, count);
     for (std::size_t k = 0; k < count; ++k) {
       if (!block.Inside(k)) continue;
+      const bool at_home = std::all_of(dexterity.begin(), dexterity.end(), [k](const auto& d) {
+        return d.OnHomeSide(k);
+      });
+      if (!at_home) {
+        ++out.beyond;
+        continue;
+      }
       ++out.inside;
       extents.Take(block, k);
       for (std::size_t m = 0; m < dexterity.size(); ++m) {

@@ -246,7 +246,7 @@ std::optional<std::vector<Choice>> StudySpaceBuilder::Meeting(const Term& term,
 
 void StudySpaceBuilder::ForbidByRule(const StudyRule& rule, int number) {
   const auto first = Meeting(rule.forbid.front(), rule);
-  const auto second = Meeting(rule.forbid.back(), rule);
+  const auto second = rule.forbid.size() == 1 ? first : Meeting(rule.forbid.back(), rule);
   if (!first || !second) return;
   bool merges = false;
   std::size_t forbidden = 0;
@@ -298,9 +298,17 @@ void StudySpaceBuilder::JudgeBlur(const StudyRule& rule, bool merges) {
     });
   };
   const bool sides = asks("part:") || asks("tool:") || asks("side:") || asks("base:");
-  const bool blurred = (study().equivalence == Equivalence::kRelativeMotion && sides) ||
-                       (study().equivalence != Equivalence::kString && (merges || asks("place:")));
-  if (!blurred) return;
+  if (study().equivalence == Equivalence::kRelativeMotion && sides) {
+    Say(Severity::kWarning,
+        codes::kBlurredRule,
+        rule.place,
+        fmt::format("the rule '{}' asks for a side, and layouts that differ in sides count as one",
+                    rule.title.name),
+        "every motion of a layout that stands for its class lies on the tool's side: with "
+        "equivalence = \"distribution\" the sides are kept apart");
+    return;
+  }
+  if (study().equivalence == Equivalence::kString || !(merges || asks("place:"))) return;
   Say(Severity::kWarning,
       codes::kBlurredRule,
       rule.place,

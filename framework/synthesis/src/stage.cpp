@@ -406,7 +406,10 @@ Verdict Evaluator::State::PassZone(const Machine& machine,
   }
   const ZoneMap map = MapZone(*judge, lengths, zone.region, PoseGrid(zone.region, settings.poses));
   row.metrics.Set(MetricId::kZoneShare, map.Share());
-  if (map.Share() < settings.zone_share) return Reject("the required zone is not reached");
+  if (map.Share() < settings.zone_share) {
+    return Reject(map.beyond > 0 ? "the required zone lies beyond a singularity"
+                                 : "the required zone is not reached");
+  }
   double travel = 0.0;
   for (std::size_t i = 0; i < map.drives.size(); ++i) {
     if (!machine.drives()[i].rotary) travel += map.drives[i].width();
