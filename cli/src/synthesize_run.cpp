@@ -12,6 +12,7 @@
 #include <atomic>
 #include <csignal>
 #include <memory>
+#include <set>
 
 #include "kompono/formula/formula.hpp"
 
@@ -85,7 +86,8 @@ class Synthesis {
     if (!front_) return;
     const std::vector<synthesis::FrontPoint> extremes = front_->front().Extremes();
     const std::optional<synthesis::FrontPoint> knee = front_->front().Knee();
-    for (const synthesis::FrontPoint& point : front_->front().Points()) {
+    summary_.front_size = front_->front().size();
+    for (const synthesis::FrontPoint& point : Shown(extremes, knee)) {
       SynthesisRow row = RowOf(point.id);
       row.values = point.values;
       row.knee = knee && knee->id == point.id;
@@ -98,6 +100,29 @@ class Synthesis {
   }
 
  private:
+  /// The front, or what stands for it: a point for each box, the extremes and the knee.
+  [[nodiscard]] std::vector<synthesis::FrontPoint> Shown(
+      const std::vector<synthesis::FrontPoint>& extremes,
+      const std::optional<synthesis::FrontPoint>& knee) const {
+    std::vector<synthesis::FrontPoint> all = front_->front().Points();
+    if (summary_.epsilon <= 0.0 || all.empty()) return all;
+    std::vector<double> sides;
+    for (std::size_t k = 0; k < front_->metrics().size(); ++k) {
+      const auto [least, most] =
+          std::minmax_element(all.begin(), all.end(), [k](const auto& a, const auto& b) {
+            return a.values[k] < b.values[k];
+          });
+      const double extent = most->values[k] - least->values[k];
+      sides.push_back(extent > 0.0 ? summary_.epsilon * extent : 1.0);
+    }
+    std::set<std::uint64_t> kept;
+    for (const synthesis::FrontPoint& point : front_->front().Thinned(sides)) kept.insert(point.id);
+    for (const synthesis::FrontPoint& point : extremes) kept.insert(point.id);
+    if (knee) kept.insert(knee->id);
+    std::erase_if(all, [&kept](const auto& point) { return !kept.contains(point.id); });
+    return all;
+  }
+
   /// Computed again: rows are the same whenever they are computed.
   [[nodiscard]] SynthesisRow RowOf(std::uint64_t index) const {
     const synthesis::Selection selection = all_.Unrank(index);
@@ -245,6 +270,12 @@ void AddRunOptions(CLI::App& command, Session& session, SynthesizeRunOptions& op
   command.add_option("--limit", options.limit, "Evaluate at most so many candidates now")
       ->type_name("N");
   command.add_option("--front", options.front, "Show so many layouts of the front")->type_name("N");
+  command
+      .add_option("--epsilon",
+                  options.epsilon,
+                  "Thin the front: one layout for each box of this share of its extent")
+      ->type_name("SHARE")
+      ->check(CLI::Range(0.0, 1.0));
 }
 
 RowStore MemoryStore() {
@@ -288,6 +319,7 @@ ExitCode RunSynthesis(Session& session,
   const Diagnostics unread =
       store->rows(*range, [&synthesis](const Evaluation& row) { synthesis.Take(row); });
   if (HasErrors(unread)) return session.Refuse(unread);
+  synthesis.summary().epsilon = options.epsilon;
   synthesis.Finish();
   const SynthesisSummary& summary = synthesis.summary();
   if (session.json) {

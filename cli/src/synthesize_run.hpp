@@ -20,6 +20,7 @@ struct SynthesizeRunOptions {
   unsigned threads = 0;
   std::uint64_t limit = 0;  ///< at most so many candidates now; 0: all
   std::size_t front = 20;   ///< rows of the front that are shown
+  double epsilon = 0.0;     ///< share of the front's extent within which one layout stands for all
 };
 
 void AddRunOptions(CLI::App& command, Session& session, SynthesizeRunOptions& options);

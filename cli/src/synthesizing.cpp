@@ -86,7 +86,13 @@ std::string FrontText(const Console& console,
     cells.push_back(std::move(layout));
     table.Row(std::move(cells));
   }
-  std::string out = fmt::format("\nfront: {}\n", Counted(summary.front.size(), "layout"));
+  std::string out = fmt::format("\nfront: {}", Counted(summary.front.size(), "layout"));
+  if (summary.epsilon > 0.0) {
+    out += fmt::format(" of {}, one for each box of {:.4g} of its extent, ends and knee besides",
+                       summary.front_size,
+                       summary.epsilon);
+  }
+  out += "\n";
   out += table.Render();
   if (summary.front.size() > most_rows) out += "  more with --front N, all with --json\n";
   return out;
@@ -246,6 +252,8 @@ nlohmann::ordered_json SynthesisJson(const SynthesisSummary& summary) {
            {"ok", summary.ok},
            {"stages", StagesJson(summary)},
            {"objectives", std::move(objectives)},
+           {"epsilon", summary.epsilon},
+           {"front_size", summary.front_size},
            {"front", std::move(front)}};
   if (summary.reference) out["reference"] = ReferenceJson(summary);
   return out;

@@ -47,6 +47,8 @@ struct SynthesisSummary {
   std::map<std::pair<std::size_t, std::string>, std::uint64_t> reasons;
   std::vector<synthesis::MetricId> objectives;
   std::vector<SynthesisRow> front;
+  std::size_t front_size = 0;  ///< before it was thinned
+  double epsilon = 0.0;        ///< as given; 0: the whole front
   std::optional<ReferenceResult> reference;
 };
 

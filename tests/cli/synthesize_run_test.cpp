@@ -48,6 +48,38 @@ TEST_F(SynthesizeRun, FindsTheOpenBaseWaterJetOfSoOnItsFront) {
   EXPECT_EQ(json["ok"].get<std::uint64_t>() + rejected, 122U) << "nothing failed";
 }
 
+TEST_F(SynthesizeRun, ThinsTheFrontAndKeepsItsEndsAndKnee) {
+  const auto whole = Json({"synthesize", Study("so_waterjet")});
+  const auto thin = Json({"synthesize", Study("so_waterjet"), "--epsilon", "0.2"});
+  EXPECT_EQ(whole["front_size"], whole["front"].size());
+  EXPECT_EQ(thin["front_size"], whole["front"].size());
+  EXPECT_EQ(thin["epsilon"], 0.2);
+  EXPECT_LT(thin["front"].size(), whole["front"].size() / 2);
+  for (const auto& row : whole["front"]) {
+    const bool marked = row.value("knee", false) || row.contains("best_in");
+    const bool kept =
+        std::any_of(thin["front"].begin(), thin["front"].end(), [&row](const auto& other) {
+          return other["index"] == row["index"];
+        });
+    EXPECT_TRUE(kept || !marked) << row["index"];
+  }
+  const Outcome text = Run({"synthesize", Study("so_waterjet"), "--epsilon", "0.2"});
+  EXPECT_THAT(text.out,
+              HasSubstr(", one for each box of 0.2 of its extent, ends and knee besides"));
+  EXPECT_EQ(Run({"synthesize", Study("so_waterjet"), "--epsilon", "2"}).code, 2);
+}
+
+TEST_F(SynthesizeRun, AnUnknownTagOfAOneTermRuleIsNamedOnce) {
+  Write("study.toml",
+        Read(Study("pyramid_or_delta")) +
+            "\n[[rule]]\nname = \"nonsense\"\nkind = \"empirical\"\nreason = \"none\"\nauthor = "
+            "\"test\"\nforbid = [\"no-such-tag\"]\n");
+  const Outcome outcome = Run({"check", "study.toml"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.out, "study.toml: 1 error\n") << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("no alternative has the tag 'no-such-tag'"));
+}
+
 TEST_F(SynthesizeRun, SaysWhatBeatsTheReference) {
   const auto json = Json({"synthesize", Study("kdd_lathes")});
   const auto& reference = json["reference"];

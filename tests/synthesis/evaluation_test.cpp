@@ -182,6 +182,24 @@ TEST(ZoneMap, CountsWhatIsOutOfReach) {
   EXPECT_NEAR(map.Share(), 0.6, 0.01);
 }
 
+/// The tool of a bi-glide passes its rail, where both legs lie along it: there and behind it is no
+/// zone, though every drive reaches it.
+TEST(ZoneMap, EndsAtASingularity) {
+  const Machine machine = Built(
+      "kompono = 1\nname = \"Bi-glide\"\nformula = \"part O (XY):glides tool\"\n"
+      "[block.glides]\nmodule = \"biglide\"\nparameters = { L1 = 400, L2 = 400, width = 80 }\n"
+      "home = { X = 0, Y = 250 }\n");
+  const auto judge = analysis::PoseJudge::Make(machine, machine.nominal(), {});
+  ASSERT_TRUE(judge);
+  const VectorXd home = machine.home();
+  analysis::Region region{.z = home, .varied = {1}};
+  region.lower = {-std::abs(home[1])};
+  region.upper = {std::abs(home[1])};
+  const ZoneMap map = MapZone(*judge, {1.0}, region, PoseGrid(region, 1000));
+  EXPECT_EQ(map.inside, 500U);
+  EXPECT_EQ(map.beyond, 500U);
+}
+
 TEST(Budget, OfThreePerpendicularAxesIsTheWeakestDriveAndTheSumOfVariances) {
   const Machine machine = Built(kGantry);
   const RequiredZone zone =

@@ -298,9 +298,8 @@ ZoneMap MapZone(const analysis::PoseJudge& judge,
     for (std::size_t m = 0; m < dexterity.size(); ++m) dexterity[m].Evaluate(block, count);
     for (std::size_t k = 0; k < count; ++k) {
       if (!block.Inside(k)) continue;
-      const bool at_home = std::all_of(dexterity.begin(), dexterity.end(), [k](const auto& d) {
-        return d.OnHomeSide(k);
-      });
+      const bool at_home = std::all_of(
+          dexterity.begin(), dexterity.end(), [k](const auto& d) { return d.OnHomeSide(k); });
       if (!at_home) {
         ++out.beyond;
         continue;

@@ -57,7 +57,8 @@ class PoseGrid {
 /// What a map of poses says of a machine's mechanisms.
 struct ZoneMap {
   std::uint64_t poses = 0, inside = 0;
-  std::uint64_t beyond = 0;  ///< within all limits, but across a type 2 singularity as seen from home
+  std::uint64_t beyond =
+      0;  ///< within all limits, but across a type 2 singularity as seen from home
   double dexterity_mean = 1.0, dexterity_worst = 1.0;  ///< 1/condition; of several the least
   std::vector<Interval> drives;  ///< of each machine drive, what the zone needs of it
   [[nodiscard]] double Share() const {
