@@ -10,6 +10,8 @@
 namespace kompono::calibration {
 namespace {
 
+constexpr double kRounding =
+    1e-14;  ///< variance of 1e-9 mm against the 0.01 mm assumed: no row is off by that
 constexpr double kChance = 1e-3;        ///< that one good row of all is rejected
 constexpr double kMostRejected = 0.35;  ///< of the rows; more are no outliers
 constexpr double kGross = 100.0;        ///< times the square at which a row of the start stands out
@@ -105,7 +107,7 @@ class RobustSolver {
     std::nth_element(ratios.begin(), middle, ratios.end());
     const double fitted = static_cast<double>(problem_.selection->size()) / total_;
     const double variance = *middle / std::max(0.1, 1.0 - fitted);
-    return scale_known_ ? std::max(1.0, variance) : std::max(1e-300, variance);
+    return scale_known_ ? std::max(1.0, variance) : std::max(kRounding, variance);
   }
 
   [[nodiscard]] double Limit(std::size_t i) const {

@@ -66,6 +66,28 @@ TEST_F(Calibrate, FindsTheRealGeometryAndWritesALayout) {
               1e-9);
 }
 
+TEST_F(Calibrate, RoundingOfRowsWithoutNoiseIsNoOutlier) {
+  const std::string hexapod = Machine("hexapod_reference");
+  ASSERT_EQ(Run({"measure",
+                 hexapod,
+                 "--points",
+                 "1000",
+                 "--kind",
+                 "pose",
+                 "--seed",
+                 "3",
+                 "-o",
+                 "p.csv",
+                 "--region",
+                 "X=-100:100,Y=-100:100,Z=500:700,A=-10:10,B=-10:10,C=-10:10"})
+                .code,
+            0);
+  const Outcome outcome = Run({"calibrate", hexapod, "p.csv"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("1000 rows with 6000 numbers"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("left out as outliers")));
+}
+
 TEST_F(Calibrate, JsonIsTheWholeReport) {
   Measurements("p.csv");
   const nlohmann::json report =
